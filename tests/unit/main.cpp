@@ -1,0 +1,4 @@
+// SPDX-FileCopyrightText: 2026 The vsplit authors
+// SPDX-License-Identifier: MIT
+#define CATCH_CONFIG_MAIN
+#include <catch2/catch.hpp>
