@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: 2026 The vsplit authors
+// SPDX-License-Identifier: MIT
+//
+// Where things are in a .pmesh file of version 0 (formats/spec/pmesh-0.md), and the little-endian numbers in it.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <vector>
+
+namespace vsplit {
+
+inline constexpr std::array<unsigned char, 8> kMagic = {0x8F, 'p', 'm', 'e', 's', 'h', '\r', '\n'};
+inline constexpr std::uint32_t kVersion = 0;
+inline constexpr std::uint32_t kFlagWeights = 1;
+inline constexpr std::size_t kHeaderBytes = 120;
+inline constexpr std::size_t kTableEntryBytes = 48;
+inline constexpr std::size_t kTableChecksumAt = 104;
+inline constexpr std::size_t kHeaderChecksumAt = 112;
+
+static_assert(std::endian::native == std::endian::little, "numbers are copied as they are");
+
+/// Appends numbers, little-endian.
+class ByteWriter {
+  public:
+    template <class T>
+    void put(T value) {
+        const auto at = bytes_.size();
+        bytes_.resize(at + sizeof(T));
+        std::memcpy(bytes_.data() + at, &value, sizeof(T));
+    }
+    std::vector<std::byte>& bytes() { return bytes_; }
+
+  private:
+    std::vector<std::byte> bytes_;
+};
+
+/// Reads numbers at known places; the caller has checked that they are there.
+template <class T>
+T get(std::span<const std::byte> bytes, std::size_t offset) {
+    T value;
+    std::memcpy(&value, bytes.data() + offset, sizeof(T));
+    return value;
+}
+
+}  // namespace vsplit
