@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: 2026 The vsplit authors
+// SPDX-License-Identifier: MIT
+#include "vsplit/bake/collapse.hpp"
+
+#include <ctime>
+
+#include "collapser.hpp"
+
+namespace vsplit::bake {
+namespace {
+
+double cpu_seconds() {
+    timespec now{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
+}
+
+}  // namespace
+
+Result<CollapseResult> collapse(const Mesh& mesh, const CollapseOptions& options, const Progress& progress) {
+    const auto refuse = [](std::string message) { return Error{ErrorCode::kArgument, std::move(message), Error::kNowhere, 0}; };
+    if (const char* fault = mesh_fault(mesh)) return refuse(std::string("unsound mesh: ") + fault);
+    if (mesh.triangles.size() > (std::size_t{1} << 30) || mesh.positions.size() > (std::size_t{1} << 30))
+        return Error{ErrorCode::kLimit, "more than 2^30 triangles or vertices", Error::kNowhere, 0};
+    if (!(options.boundary_weight >= 0) || !(options.volume_weight >= 0) || !(options.regularisation > 0) ||
+        !(options.deviation_limit >= 0) || !(options.lock_features_degrees >= 0))
+        return refuse("a collapse option is negative");
+    CollapseResult result;
+    const double start = cpu_seconds();
+    Collapser collapser(mesh, options);
+    if (!collapser.run(progress)) return Error{ErrorCode::kCancelled, "cancelled", Error::kNowhere, 0};
+    result.mesh = collapser.finish(result.report);
+    result.report.collapse_cpu_seconds = cpu_seconds() - start;
+    return result;
+}
+
+}  // namespace vsplit::bake

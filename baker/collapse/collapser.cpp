@@ -1,0 +1,363 @@
+// SPDX-FileCopyrightText: 2026 The vsplit authors
+// SPDX-License-Identifier: MIT
+#include "collapser.hpp"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "distance.hpp"
+
+namespace vsplit::bake {
+namespace {
+
+constexpr float kNeverCost = std::numeric_limits<float>::infinity();
+
+Float3 to_float(Double3 p) { return {float(p.x), float(p.y), float(p.z)}; }
+Double3 to_double(Float3 p) { return {p.x, p.y, p.z}; }
+
+/// Visits each neighbour of `v`; those that two triangles name come once where the fan is closed and consistently oriented.
+template <class Visit>
+void visit_neighbours(const StarMesh& mesh, std::uint32_t v, std::vector<Neighbour>& scratch, const Visit& visit) {
+    if (mesh.kind(v) == VertexKind::kInner) {
+        for (const std::uint32_t t : mesh.star(v)) {
+            const Triangle& c = mesh.triangle(t);
+            visit(c[0] == v ? c[1] : c[1] == v ? c[2] : c[0]);
+        }
+        return;
+    }
+    neighbours_of(mesh, v, scratch);
+    for (const Neighbour& n : scratch) visit(n.vertex);
+}
+
+}  // namespace
+
+Collapser::Collapser(const Mesh& mesh, const CollapseOptions& options)
+    : options_(options),
+      mesh_(mesh),
+      components_(mesh_),
+      guards_(mesh_),
+      queue_(mesh_.vertex_count() + std::size_t{components_.count()}),
+      record_(!mesh.weights.empty()),
+      strictness_{options.min_normal_cosine, options.min_quality, 60, true},
+      shapes_(mesh_.vertex_count()),
+      witnesses_(mesh_.vertex_count()),
+      targets_(mesh_.vertex_count(), kNoVertex) {
+    if (!mesh.weights.empty()) {
+        weights_.reserve(mesh_.vertex_count());
+        for (const std::uint32_t v : mesh_.input_vertices()) weights_.push_back(mesh.weights[v]);
+    }
+    lock(mesh);
+    for (std::uint32_t v = 0; v < mesh_.vertex_count() && components_.count() > 1; ++v)
+        if (mesh_.kind(v) != VertexKind::kDead && !weights_.empty() && weights_[v] > 1) components_.keep(components_.of(v));
+    tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, mesh_.vertex_count(), 4096), [&](const tbb::blocked_range<std::uint32_t>& range) {
+        std::vector<Neighbour> scratch;
+        for (std::uint32_t v = range.begin(); v < range.end(); ++v) {
+            if (mesh_.kind(v) == VertexKind::kDead) continue;
+            rebuild_shape(mesh_, v, options_.boundary_weight, scratch, shapes_[v]);
+            std::copy_n(shapes_[v].area, 3, shapes_[v].normal);
+            if (!weights_.empty() && std::isfinite(weights_[v])) shapes_[v].weight = weights_[v];
+            witnesses_[v] = to_float(mesh_.position(v));
+        }
+    });
+    if (options.cost == Cost::kPaper) paper_ = std::make_unique<PaperCost>(mesh_);
+}
+
+void Collapser::lock(const Mesh&) {
+    std::vector<std::uint32_t> locked;
+    const double cosine = std::cos(options_.lock_features_degrees * std::numbers::pi / 180);
+    for (std::uint32_t v = 0; v < mesh_.vertex_count(); ++v) {
+        if (mesh_.kind(v) == VertexKind::kDead) continue;
+        bool lock = !weights_.empty() && std::isinf(weights_[v]);
+        if (options_.lock_boundary && mesh_.kind(v) != VertexKind::kInner) lock = true;
+        if (options_.lock_features_degrees > 0 && !lock) {
+            // Two triangles of the star that share an edge at v.
+            const auto star = mesh_.star(v);
+            for (std::size_t i = 0; i < star.size() && !lock; ++i)
+                for (std::size_t j = 0; j < star.size() && !lock; ++j) {
+                    const Triangle &a = mesh_.triangle(star[i]), &b = mesh_.triangle(star[j]);
+                    const std::uint32_t next = a[0] == v ? a[1] : a[1] == v ? a[2] : a[0];
+                    const std::uint32_t previous = b[0] == v ? b[2] : b[1] == v ? b[0] : b[1];
+                    if (next != previous) continue;
+                    const Double3 na = mesh_.normal(a), nb = mesh_.normal(b);
+                    lock = dot(na, nb) < cosine * length(na) * length(nb);
+                }
+        }
+        if (lock) locked.push_back(v);
+    }
+    for (const std::uint32_t v : locked) {
+        mesh_.fix(v);
+        components_.keep(components_.of(v));
+    }
+}
+
+Candidate Collapser::evaluate(std::uint32_t u, std::uint32_t v, Fold fold) const {
+    if (paper_) {
+        thread_local EdgeStar star;
+        star.gather(mesh_, u, v);
+        return paper_->evaluate(mesh_, star, fold, options_.placement, double(shapes_[u].weight), double(shapes_[v].weight));
+    }
+    const EdgeQuadric edge(mesh_.position(u), mesh_.position(v), shapes_[u], shapes_[v], options_);
+    Candidate candidate;
+    switch (fold) {
+        case Fold::kIntoFirst: candidate = {edge.half * -1.0, edge.cost(edge.half * -1.0)}; break;
+        case Fold::kIntoSecond: candidate = {edge.half, edge.cost(edge.half)}; break;
+        default: candidate = options_.placement == Placement::kOptimal ? edge.best() : edge.endpoint(false);
+    }
+    candidate.place = candidate.place + edge.middle;
+    // Among folds that cost nothing the short edges go first.
+    candidate.cost = std::max(candidate.cost, 0.0) + 1e-14 * edge.edge2 * (edge.edge2 + trace(edge.sum));
+    return candidate;
+}
+
+void Collapser::list_options(std::uint32_t u) {
+    listed_.clear();
+    if (mesh_.star(u).size() > strictness_.max_valence) return;
+    visit_neighbours(mesh_, u, ring_, [&](std::uint32_t v) {
+        const Fold fold = fold_rule(mesh_, u, v);
+        if (fold != Fold::kNever) listed_.push_back({v, fold, evaluate(u, v, fold)});
+    });
+    std::sort(listed_.begin(), listed_.end(), [](const Option& a, const Option& b) {
+        return a.candidate.cost != b.candidate.cost ? a.candidate.cost < b.candidate.cost : a.other < b.other;
+    });
+}
+
+float Collapser::cheapest(std::uint32_t u) {
+    thread_local std::vector<Neighbour> scratch;
+    double best = std::numeric_limits<double>::infinity();
+    std::uint32_t target = kNoVertex;
+    if (mesh_.star(u).size() > strictness_.max_valence) return kNeverCost;
+    visit_neighbours(mesh_, u, scratch, [&](std::uint32_t v) {
+        const Fold fold = fold_rule(mesh_, u, v);
+        if (fold == Fold::kNever) return;
+        const double cost = evaluate(u, v, fold).cost;
+        if (cost < best || (cost == best && v < target)) {
+            best = cost;
+            target = v;
+        }
+    });
+    targets_[u] = target;
+    return target == kNoVertex ? kNeverCost : float(best);
+}
+
+double Collapser::deviation(const EdgeStar& star, Double3 place, Float3& witness, float& place_deviation) const {
+    const auto to_new = [&](Double3 p) {
+        double nearest = std::numeric_limits<double>::infinity();
+        for (const EdgeStar::Wing& wing : star.wings) nearest = std::min(nearest, distance2_to_triangle(p, place, wing.pa, wing.pb));
+        return nearest;
+    };
+    double farthest = std::max(to_new(star.pu), to_new(star.pv));
+    double witness_distance = -1;
+    for (const std::uint32_t end : {star.u, star.v}) {
+        const double d = to_new(to_double(witnesses_[end]));
+        if (d > witness_distance) {
+            witness_distance = d;
+            witness = witnesses_[end];
+        }
+    }
+    farthest = std::max(farthest, witness_distance);
+
+    double to_old = std::numeric_limits<double>::infinity();
+    for (const EdgeStar::Wing& wing : star.wings)
+        to_old = std::min(to_old, distance2_to_triangle(place, wing.at_first ? star.pu : star.pv, wing.pa, wing.pb));
+    for (const Double3 opposite : star.opposite_places) to_old = std::min(to_old, distance2_to_triangle(place, star.pu, star.pv, opposite));
+    const double du = length(place - star.pu), dv = length(place - star.pv);
+    const double t = du + dv > 0 ? du / (du + dv) : 0;
+    const double carried = (1 - t) * double(shapes_[star.u].deviation) + t * double(shapes_[star.v].deviation);
+    place_deviation = float(std::sqrt(to_old) + carried);
+    return std::max(std::sqrt(farthest), double(place_deviation));
+}
+
+bool Collapser::attempt(std::uint32_t u, const Option& option, Bucket bucket, float& cost) {
+    cost = kNeverCost;
+    star_.gather(mesh_, u, option.other);
+    if (!guards_.keeps_topology(star_)) return false;
+    // What will be stored decides: the guards look at the rounded place.
+    const Float3 rounded = option.fold == Fold::kIntoFirst    ? mesh_.raw_position(u)
+                           : option.fold == Fold::kIntoSecond ? mesh_.raw_position(option.other)
+                                                              : mesh_.round(option.candidate.place);
+    const Double3 place = mesh_.work(rounded);
+    if (!guards_.keeps_shape(star_, place, shapes_, strictness_)) return false;
+    Float3 witness;
+    float place_deviation = 0;
+    const double d = deviation(star_, place, witness, place_deviation);
+    const double weight = 0.5 * (double(shapes_[u].weight) + double(shapes_[option.other].weight));
+    const double limit = paper_ ? 0 : options_.deviation_limit * d * d * d * d * weight;
+    cost = float(std::max(option.candidate.cost, limit));
+    if (BucketQueue::bucket_of(cost) > bucket) return false;
+    apply(star_, option, rounded, witness, place_deviation, float(d));
+    return true;
+}
+
+void Collapser::apply(const EdgeStar& star, const Option& option, Float3 place, Float3 witness, float place_deviation, float error) {
+    std::uint32_t parent = star.u, child = star.v;
+    const bool may_swap = option.fold == Fold::kAnywhere && mesh_.kind(star.u) == mesh_.kind(star.v);
+    if (option.fold == Fold::kIntoSecond || (option.fold == Fold::kAnywhere && mesh_.kind(star.v) == VertexKind::kCurve && !may_swap) ||
+        (may_swap && mesh_.star(star.v).size() > mesh_.star(star.u).size()))
+        std::swap(parent, child);
+
+    const Double3 at = mesh_.work(place);
+    for (const EdgeStar::Wing& wing : star.wings) {
+        const Double3 apex = wing.at_first ? star.pu : star.pv;
+        const Double3 before = cross(wing.pa - apex, wing.pb - apex), after = cross(wing.pa - at, wing.pb - at);
+        for (const std::uint32_t w : {wing.a, wing.b}) {
+            add_triangle(shapes_[w], before, -1);
+            add_triangle(shapes_[w], after, 1);
+        }
+    }
+    for (std::size_t i = 0; i < star.opposite.size(); ++i) {
+        Double3 n = cross(star.pv - star.pu, star.opposite_places[i] - star.pu);
+        if (!star.forward[i]) n = n * -1.0;
+        add_triangle(shapes_[star.opposite[i]], n, -1);
+    }
+
+    error_ = std::max(error_, error);
+    const std::uint32_t before = mesh_.live_triangles();
+    const Float3 parent_position = mesh_.raw_position(parent);
+    const float parent_weight = weights_.empty() ? 1 : weights_[parent];
+    mesh_.fold(child, parent, record_.corners_changed, record_.removed);
+    record_.add(child, parent, parent_position, parent_weight, error_);
+    components_.lose(components_.of(parent), before - mesh_.live_triangles());
+    mesh_.set_raw_position(parent, place);
+
+    VertexShape& shape = shapes_[parent];
+    for (std::size_t i = 0; i < 3; ++i) shape.normal[i] += shapes_[child].normal[i];
+    shape.weight = 0.5f * (shape.weight + shapes_[child].weight);
+    shape.deviation = place_deviation;
+    if (!weights_.empty()) weights_[parent] = 0.5f * (weights_[parent] + weights_[child]);
+    witnesses_[parent] = witness;
+    if (paper_) paper_->merge(parent, child);
+    rebuild_shape(mesh_, parent, options_.boundary_weight, ring_, shape);
+
+    // The ring: its triangles changed, so its costs did; they are looked at again when their turn comes.
+    touched_.clear();
+    visit_neighbours(mesh_, parent, ring_, [&](std::uint32_t w) { touched_.push_back(w); });
+    const Bucket now = BucketQueue::bucket_of(float(option.candidate.cost));
+    for (const std::uint32_t w : touched_) {
+        if (mesh_.kind(w) != VertexKind::kInner) rebuild_shape(mesh_, w, options_.boundary_weight, ring_, shapes_[w]);
+        targets_[w] = kNoVertex;
+        if (!queue_.contains(w)) queue_.push(w, now);
+    }
+    queue_.remove(child);
+    const float cost = cheapest(parent);
+    if (cost < kNeverCost) queue_.push(parent, BucketQueue::bucket_of(cost));
+    else queue_.remove(parent);
+}
+
+void Collapser::process(std::uint32_t u, Bucket bucket) {
+    if (mesh_.kind(u) == VertexKind::kDead) return;
+    if (const std::uint32_t v = targets_[u]; v != kNoVertex && mesh_.kind(v) != VertexKind::kDead) {
+        if (const Fold fold = fold_rule(mesh_, u, v); fold != Fold::kNever) {
+            float cost;
+            if (attempt(u, {v, fold, evaluate(u, v, fold)}, bucket, cost)) return;
+            if (cost < kNeverCost) {
+                queue_.push(u, BucketQueue::bucket_of(cost));
+                return;
+            }
+        }
+    }
+    list_options(u);
+    float wait = kNeverCost;
+    targets_[u] = kNoVertex;
+    for (std::size_t i = 0; i < listed_.size(); ++i) {
+        const Option option = listed_[i];
+        float cost = float(option.candidate.cost);
+        const bool due = BucketQueue::bucket_of(cost) <= bucket;
+        if (due && attempt(u, option, bucket, cost)) return;
+        if (cost < wait) {
+            wait = cost;
+            targets_[u] = option.other;
+        }
+        if (!due) break;
+    }
+    if (wait < kNeverCost) queue_.push(u, BucketQueue::bucket_of(wait));
+}
+
+void Collapser::process_component(std::uint32_t component, Bucket bucket) {
+    if (!components_.may_vanish(component)) return;
+    if (components_.live_triangles(component) > Components::kMaxVanishing) {
+        // Not small enough yet; again when all costs have doubled.
+        if (bucket + 4 < BucketQueue::bucket_of(kNeverCost)) queue_.push(component_item(component), Bucket(bucket + 4));
+        return;
+    }
+    const auto vertices = components_.live_vertices(mesh_, component);
+    std::vector<std::uint32_t> triangles;
+    for (const std::uint32_t v : vertices) {
+        const auto star = mesh_.star(v);
+        triangles.insert(triangles.end(), star.begin(), star.end());
+        queue_.remove(v);
+    }
+    std::sort(triangles.begin(), triangles.end());
+    triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
+    mesh_.vanish(vertices, triangles);
+    record_.removed.insert(record_.removed.end(), triangles.begin(), triangles.end());
+    error_ = std::max(error_, float(components_.reach(component)));
+    record_.add_vanished(vertices, error_);
+    components_.vanish(component);
+    ++vanished_;
+}
+
+bool Collapser::run(const Progress& progress) {
+    if (mesh_.triangle_count() == 0) return true;
+    std::vector<float> costs(mesh_.vertex_count(), kNeverCost);
+    tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, mesh_.vertex_count(), 2048), [&](const tbb::blocked_range<std::uint32_t>& range) {
+        for (std::uint32_t v = range.begin(); v < range.end(); ++v)
+            if (mesh_.kind(v) != VertexKind::kDead) costs[v] = cheapest(v);
+    });
+    for (std::uint32_t v = 0; v < mesh_.vertex_count(); ++v)
+        if (costs[v] < kNeverCost) queue_.push(v, BucketQueue::bucket_of(costs[v]));
+    std::vector<float>().swap(costs);
+    for (std::uint32_t c = 0; c < components_.count(); ++c)
+        if (components_.may_vanish(c)) {
+            const double reach = components_.reach(c);
+            const double limit = paper_ ? reach : std::max(options_.deviation_limit, 1.0) * reach * reach * reach * reach;
+            queue_.push(component_item(c), BucketQueue::bucket_of(float(limit)));
+        }
+
+    const double total = double(mesh_.triangle_count());
+    // Later passes get past what a guard stopped; the shape of the coarsest levels counts less than that there is one.
+    const Strictness passes[] = {strictness_, {0.0, 1e-3, 1000, true}, {-0.5, 1e-5, 1u << 30, false}};
+    for (const Strictness& strictness : passes) {
+        strictness_ = strictness;
+        if (&strictness != passes) {
+            if (mesh_.live_vertices() <= 64) break;
+            for (std::uint32_t v = 0; v < mesh_.vertex_count(); ++v)
+                if (mesh_.kind(v) != VertexKind::kDead) {
+                    targets_[v] = kNoVertex;
+                    queue_.push(v, 0);
+                }
+        }
+        std::uint32_t item = 0;
+        Bucket bucket = 0;
+        for (std::uint64_t count = 0; queue_.pop(item, bucket); ++count) {
+            if (item < mesh_.vertex_count()) process(item, bucket);
+            else process_component(item - mesh_.vertex_count(), bucket);
+            if (progress && (count & 0x3FFF) == 0 && !progress("collapse", 1 - double(mesh_.live_triangles()) / total)) return false;
+        }
+    }
+    return true;
+}
+
+ProgressiveMesh Collapser::finish(CollapseReport& report) {
+    report.collapses = record_.size();
+    report.components = components_.count();
+    report.components_vanished = vanished_;
+    for (std::uint32_t v = 0; v < mesh_.vertex_count(); ++v) report.fixed_vertices += mesh_.kind(v) == VertexKind::kFixed;
+    report.stopped_by = mesh_.triangle_count() == 0 ? "there is nothing to collapse"
+                                                    : "every remaining edge is fixed, or its collapse would change the topology";
+    // Only the mesh itself is needed from here on.
+    std::vector<VertexShape>().swap(shapes_);
+    std::vector<Float3>().swap(witnesses_);
+    std::vector<std::uint32_t>().swap(targets_);
+    paper_.reset();
+    ProgressiveMesh mesh = record_.finish(mesh_, weights_, nullptr);
+    const float unit = float(1 / mesh_.scale());
+    for (Split& split : mesh.splits) split.error *= unit;
+    return mesh;
+}
+
+}  // namespace vsplit::bake

@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: 2026 The vsplit authors
+// SPDX-License-Identifier: MIT
+//
+// What is written down at each collapse, and how it becomes a progressive mesh.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "star_mesh.hpp"
+#include "vsplit/progressive_mesh.hpp"
+
+namespace vsplit::bake {
+
+/// The collapses in the order in which they happened, in the numbers of a StarMesh.
+class Record {
+  public:
+    explicit Record(bool has_weights) : has_weights_(has_weights) {}
+
+    /// `child` folded into `parent`, which was at `parent_position` with `parent_weight`; ranges of the two lists that
+    /// StarMesh::fold() appended to end here. The child keeps position and weight in the mesh.
+    void add(std::uint32_t child, std::uint32_t parent, const Float3& parent_position, float parent_weight, float error);
+    /// A component went: `vertices` and (in `removed`) its triangles.
+    void add_vanished(const std::vector<std::uint32_t>& vertices, float error);
+
+    std::vector<std::uint32_t> corners_changed;  ///< 3 * triangle + corner.
+    std::vector<std::uint32_t> removed;          ///< Triangles.
+
+    std::size_t size() const { return steps_.size(); }
+
+    /// Reverses the record: births in the order of the splits. `weights` are the current ones of all vertices (empty: none),
+    /// the dead ones' as they were when they went. `births`, if given, receives the StarMesh vertex of each vertex. Consumes the record.
+    ProgressiveMesh finish(const StarMesh& mesh, const std::vector<float>& weights, std::vector<std::uint32_t>* births);
+
+  private:
+    struct Step {
+        std::uint32_t child;   ///< Or kNoVertex: a component vanished.
+        std::uint32_t parent;
+        std::uint32_t corners_end;
+        std::uint32_t removed_end;
+        Float3 parent_position;
+        float error;
+    };
+    std::vector<Step> steps_;
+    std::vector<float> parent_weights_;
+    std::vector<std::uint32_t> vanished_;         // vertices of vanished components
+    std::vector<std::uint32_t> vanished_begins_;  // where each of them begins
+    bool has_weights_;
+};
+
+}  // namespace vsplit::bake

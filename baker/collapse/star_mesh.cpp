@@ -1,0 +1,244 @@
+// SPDX-FileCopyrightText: 2026 The vsplit authors
+// SPDX-License-Identifier: MIT
+#include "star_mesh.hpp"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
+
+#include <algorithm>
+#include <numeric>
+
+namespace vsplit::bake {
+namespace {
+
+/// Spreads 21 bits, two zeros between each.
+std::uint64_t spread(std::uint64_t x) {
+    x = (x | x << 32) & 0x1F00000000FFFFu;
+    x = (x | x << 16) & 0x1F0000FF0000FFu;
+    x = (x | x << 8) & 0x100F00F00F00F00Fu;
+    x = (x | x << 4) & 0x10C30C30C30C30C3u;
+    return (x | x << 2) & 0x1249249249249249u;
+}
+
+template <class Body>
+void parallel(std::size_t count, const Body& body) {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 4096), [&](const tbb::blocked_range<std::size_t>& range) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i) body(i);
+    });
+}
+
+std::uint32_t find_root(std::vector<std::uint32_t>& roots, std::uint32_t i) {
+    while (roots[i] != i) i = roots[i] = roots[roots[i]];
+    return i;
+}
+
+}  // namespace
+
+StarMesh::StarMesh(const Mesh& mesh) {
+    const std::size_t vertices = mesh.positions.size();
+    Double3 low, high;
+    for (std::size_t i = 0; i < vertices; ++i) {
+        const Double3 p{mesh.positions[i].x, mesh.positions[i].y, mesh.positions[i].z};
+        if (i == 0) low = high = p;
+        low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+        high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+    }
+    const Double3 middle = (low + high) * 0.5;
+    // A float, so that differences to it are exact in doubles.
+    centre_ = {double(float(middle.x)), double(float(middle.y)), double(float(middle.z))};
+    const double extent = std::max({high.x - low.x, high.y - low.y, high.z - low.z});
+    int exponent = 0;
+    if (extent > 0) std::frexp(extent, &exponent);
+    scale_ = std::ldexp(1.0, -exponent);
+
+    std::vector<std::pair<std::uint64_t, std::uint32_t>> order(vertices);
+    parallel(vertices, [&](std::size_t i) {
+        const Double3 p = work(mesh.positions[i]);
+        const auto quantised = [](double c) { return static_cast<std::uint64_t>(std::clamp((c + 1) * 0x100000, 0.0, 2097151.0)); };
+        order[i] = {spread(quantised(p.x)) | spread(quantised(p.y)) << 1 | spread(quantised(p.z)) << 2, std::uint32_t(i)};
+    });
+    tbb::parallel_sort(order.begin(), order.end());
+    input_vertices_.resize(vertices);
+    positions_.resize(vertices);
+    std::vector<std::uint32_t> renumbered(vertices);
+    parallel(vertices, [&](std::size_t i) {
+        input_vertices_[i] = order[i].second;
+        positions_[i] = mesh.positions[order[i].second];
+        renumbered[order[i].second] = std::uint32_t(i);
+    });
+    std::vector<std::pair<std::uint64_t, std::uint32_t>>().swap(order);
+
+    // Triangles by their first vertex on the curve: a counting sort, stable.
+    star_begin_.assign(vertices + 1, 0);
+    const auto first_of = [&](const Triangle& t) { return std::min({renumbered[t[0]], renumbered[t[1]], renumbered[t[2]]}); };
+    for (const Triangle& t : mesh.triangles) ++star_begin_[first_of(t) + 1];
+    std::partial_sum(star_begin_.begin(), star_begin_.end(), star_begin_.begin());
+    triangles_.resize(mesh.triangles.size());
+    for (const Triangle& t : mesh.triangles) triangles_[star_begin_[first_of(t)]++] = {renumbered[t[0]], renumbered[t[1]], renumbered[t[2]]};
+
+    star_size_.assign(vertices, 0);
+    for (const Triangle& t : triangles_)
+        for (const std::uint32_t v : t) ++star_size_[v];
+    std::uint32_t begin = 0;
+    for (std::size_t v = 0; v < vertices; ++v) {
+        star_begin_[v] = begin;
+        begin += star_size_[v];
+        star_size_[v] = 0;
+    }
+    star_begin_.resize(vertices);
+    // Stars that outgrow their place move to the end; a fold adds what it takes away elsewhere, so this is ample.
+    arena_.reserve(std::size_t{begin} + begin / 2);
+    arena_.resize(begin);
+    for (std::uint32_t t = 0; t < triangles_.size(); ++t)
+        for (const std::uint32_t v : triangles_[t]) arena_[star_begin_[v] + star_size_[v]++] = t;
+
+    live_triangles_ = triangle_count();
+    live_vertices_ = 0;
+    classify();
+}
+
+void StarMesh::classify() {
+    kinds_.assign(vertex_count(), VertexKind::kFixed);
+    tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, vertex_count(), 4096), [&](const tbb::blocked_range<std::uint32_t>& range) {
+        std::vector<Neighbour> ring;
+        std::vector<std::uint32_t> roots;
+        for (std::uint32_t v = range.begin(); v < range.end(); ++v) {
+            if (star_size_[v] == 0) {
+                kinds_[v] = VertexKind::kDead;
+                continue;
+            }
+            neighbours_of(*this, v, ring);
+            std::size_t special = 0;
+            const Neighbour* curve[2] = {};
+            for (const Neighbour& n : ring)
+                if (n.special()) {
+                    if (special < 2) curve[special] = &n;
+                    ++special;
+                }
+            if (special != 0 && special != 2) continue;
+            if (special == 2) {
+                const int a = curve[0]->out + curve[0]->in, b = curve[1]->out + curve[1]->in;
+                if (a != b) continue;
+            }
+            // The link must hang together: otherwise several fans meet in this one point.
+            roots.resize(ring.size());
+            std::iota(roots.begin(), roots.end(), 0u);
+            const bool sorted = star_size_[v] > kLargeStar;
+            const auto index_of = [&](std::uint32_t w) {
+                if (sorted)
+                    return std::uint32_t(std::lower_bound(ring.begin(), ring.end(), w, [](const Neighbour& n, std::uint32_t x) { return n.vertex < x; }) - ring.begin());
+                return std::uint32_t(std::find_if(ring.begin(), ring.end(), [&](const Neighbour& n) { return n.vertex == w; }) - ring.begin());
+            };
+            for (const std::uint32_t t : star(v)) {
+                std::uint32_t ends[2];
+                int n = 0;
+                for (const std::uint32_t w : triangles_[t])
+                    if (w != v) ends[n++] = index_of(w);
+                roots[find_root(roots, ends[0])] = find_root(roots, ends[1]);
+            }
+            bool connected = true;
+            for (std::uint32_t i = 1; i < ring.size(); ++i) connected &= find_root(roots, i) == find_root(roots, 0);
+            if (connected) kinds_[v] = special == 0 ? VertexKind::kInner : VertexKind::kCurve;
+        }
+    });
+    live_vertices_ = static_cast<std::uint32_t>(std::count_if(kinds_.begin(), kinds_.end(), [](VertexKind k) { return k != VertexKind::kDead; }));
+}
+
+void StarMesh::fold(std::uint32_t child, std::uint32_t parent, std::vector<std::uint32_t>& corners_changed,
+                    std::vector<std::uint32_t>& removed) {
+    const std::size_t first_removed = removed.size();
+    const auto has = [&](std::uint32_t t, std::uint32_t v) {
+        return triangles_[t][0] == v || triangles_[t][1] == v || triangles_[t][2] == v;
+    };
+    std::uint32_t kept = 0;
+    for (const std::uint32_t t : star(child))
+        if (has(t, parent)) removed.push_back(t);
+        else ++kept;
+    const auto gone = std::span(removed).subspan(first_removed);
+
+    // The parent's star without the removed triangles, then the child's; in place if it fits.
+    std::uint32_t size = 0;
+    const std::uint32_t capacity = star_size_[parent];
+    for (std::uint32_t i = 0; i < capacity; ++i) {
+        const std::uint32_t t = arena_[star_begin_[parent] + i];
+        if (!has(t, child)) arena_[star_begin_[parent] + size++] = t;
+    }
+    if (size + kept > capacity) {
+        const auto begin = static_cast<std::uint32_t>(arena_.size());
+        arena_.resize(begin + size + kept);
+        std::copy_n(arena_.begin() + star_begin_[parent], size, arena_.begin() + begin);
+        star_begin_[parent] = begin;
+    }
+    for (std::uint32_t i = 0; i < star_size_[child]; ++i) {
+        const std::uint32_t t = arena_[star_begin_[child] + i];
+        if (has(t, parent)) continue;
+        arena_[star_begin_[parent] + size++] = t;
+        const std::uint32_t k = triangles_[t][0] == child ? 0 : triangles_[t][1] == child ? 1 : 2;
+        triangles_[t][k] = parent;
+        corners_changed.push_back(3 * t + k);
+    }
+    star_size_[parent] = size;
+    star_size_[child] = 0;
+    kinds_[child] = VertexKind::kDead;
+    --live_vertices_;
+
+    for (const std::uint32_t t : gone)
+        for (const std::uint32_t w : triangles_[t])
+            if (w != child && w != parent) {
+                auto* begin = arena_.data() + star_begin_[w];
+                std::uint32_t& n = star_size_[w];
+                auto* at = std::find(begin, begin + n, t);
+                *at = begin[--n];
+            }
+    live_triangles_ -= static_cast<std::uint32_t>(gone.size());
+}
+
+void StarMesh::vanish(std::span<const std::uint32_t> vertices, std::span<const std::uint32_t> triangles) {
+    for (const std::uint32_t v : vertices) {
+        kinds_[v] = VertexKind::kDead;
+        star_size_[v] = 0;
+    }
+    live_vertices_ -= static_cast<std::uint32_t>(vertices.size());
+    live_triangles_ -= static_cast<std::uint32_t>(triangles.size());
+}
+
+void neighbours_of(const StarMesh& mesh, std::uint32_t v, std::vector<Neighbour>& out) {
+    out.clear();
+    const auto star = mesh.star(v);
+    const auto corner_of = [&](const Triangle& c) { return c[0] == v ? 0 : c[1] == v ? 1 : 2; };
+    if (star.size() > kLargeStar) {
+        // Hubs of thousands of triangles exist (the poles of a sphere): sort instead of searching.
+        for (const std::uint32_t t : star) {
+            const Triangle& c = mesh.triangle(t);
+            const int k = corner_of(c);
+            out.push_back({c[(k + 1) % 3], 1, 0});
+            out.push_back({c[(k + 2) % 3], 0, 1});
+        }
+        std::sort(out.begin(), out.end(), [](const Neighbour& a, const Neighbour& b) { return a.vertex < b.vertex; });
+        std::size_t n = 0;
+        for (std::size_t i = 1; i < out.size(); ++i) {
+            if (out[i].vertex == out[n].vertex) {
+                out[n].out += out[i].out;
+                out[n].in += out[i].in;
+            } else {
+                out[++n] = out[i];
+            }
+        }
+        out.resize(n + 1);
+        return;
+    }
+    const auto entry = [&](std::uint32_t w) -> Neighbour& {
+        for (Neighbour& n : out)
+            if (n.vertex == w) return n;
+        return out.emplace_back(Neighbour{w});
+    };
+    for (const std::uint32_t t : star) {
+        const Triangle& c = mesh.triangle(t);
+        const int k = corner_of(c);
+        ++entry(c[(k + 1) % 3]).out;
+        ++entry(c[(k + 2) % 3]).in;
+    }
+}
+
+}  // namespace vsplit::bake

@@ -1,0 +1,99 @@
+// SPDX-FileCopyrightText: 2026 The vsplit authors
+// SPDX-License-Identifier: MIT
+//
+// The mesh that is being collapsed: flat triangles, and for every vertex the list of its triangles.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "vec.hpp"
+#include "vsplit/mesh.hpp"
+
+namespace vsplit::bake {
+
+/// How a vertex may collapse, after Dey, Edelsbrunner, Guha and Nekhayev, Topology preserving edge contraction (1999), section 3.
+enum class VertexKind : std::uint8_t {
+    kInner,  ///< One closed fan of triangles: may fold into any neighbour.
+    kCurve,  ///< On exactly two special edges of one kind (a boundary, a non-manifold crease): folds along them only.
+    kFixed,  ///< Anything else, or locked: stays where it is; others may fold into it.
+    kDead,   ///< Collapsed.
+};
+
+/// Vertices and triangles are numbered along a Morton curve, so that neighbours share cache lines.
+/// Positions stay the input's floats; working coordinates are exact differences to the centre, times a power of two.
+class StarMesh {
+  public:
+    explicit StarMesh(const Mesh& mesh);
+
+    std::uint32_t vertex_count() const { return static_cast<std::uint32_t>(positions_.size()); }
+    std::uint32_t triangle_count() const { return static_cast<std::uint32_t>(triangles_.size()); }
+    std::uint32_t live_triangles() const { return live_triangles_; }
+    std::uint32_t live_vertices() const { return live_vertices_; }
+
+    const Float3& raw_position(std::uint32_t v) const { return positions_[v]; }
+    void set_raw_position(std::uint32_t v, const Float3& p) { positions_[v] = p; }
+    Double3 position(std::uint32_t v) const { return work(positions_[v]); }
+    Double3 work(const Float3& p) const {
+        return {(double(p.x) - centre_.x) * scale_, (double(p.y) - centre_.y) * scale_, (double(p.z) - centre_.z) * scale_};
+    }
+    /// The float position nearest to a working position.
+    Float3 round(Double3 p) const {
+        const double inverse = 1 / scale_;
+        return {float(p.x * inverse + centre_.x), float(p.y * inverse + centre_.y), float(p.z * inverse + centre_.z)};
+    }
+    /// Working units per object unit, a power of two.
+    double scale() const { return scale_; }
+
+    /// A removed triangle keeps the corners that it had when it went.
+    const Triangle& triangle(std::uint32_t t) const { return triangles_[t]; }
+    std::span<const std::uint32_t> star(std::uint32_t v) const { return {arena_.data() + star_begin_[v], star_size_[v]}; }
+    VertexKind kind(std::uint32_t v) const { return kinds_[v]; }
+    void fix(std::uint32_t v) { kinds_[v] = VertexKind::kFixed; }
+
+    /// Twice the area vector of a triangle.
+    Double3 normal(const Triangle& t) const {
+        const Double3 a = position(t[0]);
+        return cross(position(t[1]) - a, position(t[2]) - a);
+    }
+
+    /// Folds `child` into `parent`: triangles with both go, the child's others get the parent as corner (appended to
+    /// `corners_changed` as 3 * triangle + corner), removed ones are appended to `removed`.
+    void fold(std::uint32_t child, std::uint32_t parent, std::vector<std::uint32_t>& corners_changed,
+              std::vector<std::uint32_t>& removed);
+    /// Takes out a whole component: its triangles and vertices.
+    void vanish(std::span<const std::uint32_t> vertices, std::span<const std::uint32_t> triangles);
+
+    /// Index in the input of each vertex.
+    const std::vector<std::uint32_t>& input_vertices() const { return input_vertices_; }
+
+  private:
+    void classify();
+
+    std::vector<Float3> positions_;
+    std::vector<Triangle> triangles_;
+    std::vector<std::uint32_t> star_begin_;
+    std::vector<std::uint32_t> star_size_;
+    std::vector<std::uint32_t> arena_;
+    std::vector<VertexKind> kinds_;
+    std::vector<std::uint32_t> input_vertices_;
+    Double3 centre_;
+    double scale_ = 1;
+    std::uint32_t live_triangles_ = 0, live_vertices_ = 0;
+};
+
+/// The vertices around one, each once, and how often its triangles run along the edge to it.
+struct Neighbour {
+    std::uint32_t vertex;
+    std::uint32_t out = 0, in = 0;  ///< Triangles with the edge centre->vertex, vertex->centre.
+    bool special() const { return out != 1 || in != 1; }
+};
+
+/// Stars above this size are searched by sorting.
+inline constexpr std::size_t kLargeStar = 64;
+
+/// Collects the neighbours of `v` into `out`: in order of first appearance, or by number if the star is larger than kLargeStar.
+void neighbours_of(const StarMesh& mesh, std::uint32_t v, std::vector<Neighbour>& out);
+
+}  // namespace vsplit::bake

@@ -1,0 +1,76 @@
+// SPDX-FileCopyrightText: 2026 The vsplit authors
+// SPDX-License-Identifier: MIT
+//
+// MESH -> COLLAPSE SEQUENCE: the full weighted edge-collapse record of a mesh, as a progressive mesh.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "vsplit/bake/progress.hpp"
+#include "vsplit/mesh.hpp"
+#include "vsplit/progressive_mesh.hpp"
+#include "vsplit/result.hpp"
+
+namespace vsplit::bake {
+
+/// What a collapse costs.
+enum class Cost : std::uint8_t {
+    kQuadric,  ///< Memoryless area-weighted quadrics with volume and boundary terms; docs/collapse.md. The default.
+    kPaper,    ///< E = Q/Re + F of the paper (DESIGN.md, docs/collapse.md): quadric, regularity, curvature.
+};
+
+/// Where the vertex that remains is put.
+enum class Placement : std::uint8_t {
+    kOptimal,   ///< Where the cost is least.
+    kEndpoint,  ///< On the better of the two ends: every position is one of the input's.
+};
+
+struct CollapseOptions {
+    Cost cost = Cost::kQuadric;
+    Placement placement = Placement::kOptimal;
+
+    bool lock_boundary = false;        ///< Vertices on boundary and non-manifold edges never move nor go.
+    double lock_features_degrees = 0;  ///< If > 0: nor do those on edges whose dihedral angle departs from flat by more.
+
+    /// Weight of a boundary edge's squared length times squared distance, against a triangle's area times squared distance.
+    double boundary_weight = 10;
+    /// Weight of the change of volume (soft form of Lindstrom and Turk 1998, section 4.1).
+    double volume_weight = 3;
+    /// Pull toward the edge's middle, relative to the quadric's trace: what decides where the quadric does not.
+    double regularisation = 1e-6;
+    /// A collapse waits until its cost reaches this times the fourth power of the deviation it makes; 0 turns it off.
+    double deviation_limit = 20;
+    /// Guard: a triangle's normal may turn by at most the angle of this cosine in one collapse.
+    double min_normal_cosine = 0.4;
+    /// Guard: least quality 4 sqrt(3) area / (sum of squared edges) of a changed triangle, unless it was worse before.
+    double min_quality = 0.02;
+    /// Measures the distance to the input at a dozen levels and scales the recorded errors to bound it; without, they are
+    /// local estimates.
+    bool calibrate = true;
+};
+
+/// What happened, for people and --json.
+struct CollapseReport {
+    std::uint64_t collapses = 0;
+    std::uint64_t components = 0;           ///< Of the input.
+    std::uint64_t components_vanished = 0;  ///< Left out of the base mesh; one split brings each back.
+    std::uint64_t fixed_vertices = 0;       ///< Non-manifold corners, locked, or of infinite weight: never removed.
+    std::string stopped_by;                 ///< Why there is no coarser base: "every edge is guarded or would change the topology".
+    double collapse_cpu_seconds = 0;        ///< The record alone, all threads.
+    double calibrate_cpu_seconds = 0;
+};
+
+struct CollapseResult {
+    ProgressiveMesh mesh;
+    CollapseReport report;
+};
+
+/// Collapses edges by ascending cost until none is left that keeps the topology, recording each. `mesh` must be sound
+/// (mesh_fault() null): anything else is kArgument. Weights of the mesh (painted; 1 if none) multiply the cost of their vertices,
+/// average on a collapse, and a vertex of infinite weight never moves nor goes. The result is the same for any number of threads.
+/// Works on up to 2^30 triangles; memory about 150 bytes a triangle.
+Result<CollapseResult> collapse(const Mesh& mesh, const CollapseOptions& options = {}, const Progress& progress = {});
+
+}  // namespace vsplit::bake
