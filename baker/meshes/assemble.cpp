@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <limits>
 
 #include "edge_table.hpp"
 #include "triangulate.hpp"
@@ -12,7 +11,7 @@
 namespace vsplit::bake {
 namespace {
 
-constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint32_t kNone = MeshFile::kDropped;
 
 bool finite(const Float3& p) {
     return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
@@ -127,6 +126,7 @@ Result<MeshFile> assemble_mesh(PolygonSoup&& soup, Weld weld, MeshReport report)
 
     const std::size_t vertices = soup.positions.size();
     std::uint64_t welded = 0;
+    std::vector<std::uint32_t> first;
     if (weld == Weld::kAuto) weld = Weld::kBoundary;
     if (weld != Weld::kNone) {
         std::vector<std::uint8_t> used(vertices, 0);
@@ -135,7 +135,7 @@ Result<MeshFile> assemble_mesh(PolygonSoup&& soup, Weld weld, MeshReport report)
         else
             for (const Triangle& t : mesh.triangles)
                 for (const std::uint32_t v : t) used[v] = 1;
-        const std::vector<std::uint32_t> first = weld_map(soup.positions, used);
+        first = weld_map(soup.positions, used);
         for (std::uint32_t v = 0; v < vertices; ++v) {
             if (first[v] == v) continue;
             ++welded;
@@ -176,7 +176,14 @@ Result<MeshFile> assemble_mesh(PolygonSoup&& soup, Weld weld, MeshReport report)
         for (std::uint32_t& v : t) v = renumbered[v];
     mesh.positions = std::move(soup.positions);
     mesh.weights = std::move(soup.weights);
-    return MeshFile{std::move(mesh), std::move(report)};
+
+    MeshFile file{std::move(mesh), std::move(report)};
+    if (kept < vertices) {
+        for (std::uint32_t v = 0; v < first.size(); ++v)
+            if (first[v] != v) renumbered[v] = renumbered[first[v]];
+        file.vertex_of = std::move(renumbered);
+    }
+    return file;
 }
 
 }  // namespace vsplit::bake
