@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -18,12 +19,19 @@ namespace vsplit::bake {
 /// How to read a scene.
 struct GltfOptions {
     Weld weld = Weld::kAuto;     ///< kAuto means kAll.
-    std::string weight_channel;  ///< "COLOR_0.r" (.r .g .b .a): taken as weights; empty: none. Missing everywhere: kArgument.
+    /// "COLOR_0.r" (.r .g .b .a): taken as weights, 1 where a primitive lacks it; missing everywhere: kArgument.
+    /// Empty: the attribute _WEIGHT, as encode_glb writes it, if there.
+    std::string weight_channel;
+    /// Of all instances together; more: kLimit. A few nodes can repeat a mesh without end.
+    std::uint64_t max_triangles = std::uint64_t{1} << 26;
 };
 
-/// All triangle primitives (lists, strips, fans) of the default scene (or of all root nodes, if there is none), node
-/// transforms applied, as one mesh. `folder` is where external buffers are looked for, "" refuses them.
-/// Skins and morph targets are read in their bind pose. Points and lines are counted in the report's format text and left out.
+/// All triangle primitives (lists, strips, fans) of the default scene (the first one if none is called so, all root nodes if
+/// there are no scenes), node transforms applied, as one mesh. `folder` is where external buffers are looked for, "" refuses them.
+/// Skins and morph targets are read in their bind pose, where their node stands; of MSFT_lod, the finest level.
+/// KHR_mesh_quantization, KHR_draco_mesh_compression and EXT_meshopt_compression are read; any other *required* extension that may
+/// change geometry is kUnsupported. Points and lines are counted in the report's format text and left out.
+/// Hostile bytes are safe. Errors carry the byte, in JSON text the line, or name the object: "meshes[3].primitives[0].indices".
 Result<MeshFile> parse_gltf(std::span<const std::byte> bytes, const std::string& folder, const GltfOptions& options = {});
 
 /// One level of detail.
