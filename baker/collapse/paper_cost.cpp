@@ -107,7 +107,7 @@ Candidate PaperCost::evaluate(const StarMesh&, const EdgeStar& star, Fold fold, 
     const PlaneQuadric &qu = quadrics_[star.u], &qv = quadrics_[star.v];
     for (std::size_t i = 0; i < 6; ++i) sum.a[i] = weight_u * qu.a[i] + weight_v * qv.a[i];
     sum.b = qu.b * weight_u + qv.b * weight_v;
-    const Double3 gradient = apply(sum.a, middle) + sum.b;
+    const Double3 gradient = times(sum.a, middle) + sum.b;
     const double pull = 1e-6 * trace(sum.a) + 1e-30;
     Symmetric m = sum.a;
     m[0] += pull;

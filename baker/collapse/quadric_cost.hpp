@@ -28,10 +28,10 @@ struct alignas(64) VertexShape {
     float pad[2] = {};
 };
 
-inline Double3 apply(const Symmetric& m, Double3 v) {
+inline Double3 times(const Symmetric& m, Double3 v) {
     return {m[0] * v.x + m[1] * v.y + m[2] * v.z, m[1] * v.x + m[3] * v.y + m[4] * v.z, m[2] * v.x + m[4] * v.y + m[5] * v.z};
 }
-inline double form(const Symmetric& m, Double3 v) { return dot(v, apply(m, v)); }
+inline double form(const Symmetric& m, Double3 v) { return dot(v, times(m, v)); }
 inline double trace(const Symmetric& m) { return m[0] + m[3] + m[5]; }
 
 /// A placed collapse and its cost.
@@ -97,7 +97,7 @@ struct EdgeQuadric {
         m[3] += pull;
         m[5] += pull;
         // qu (x + half) + qv (x - half) + ... = 0
-        const Double3 rhs = apply(qv, half) - apply(qu, half) + volume * (volume_scale * volume_rhs);
+        const Double3 rhs = times(qv, half) - times(qu, half) + volume * (volume_scale * volume_rhs);
         Double3 x;
         if (!solve(m, rhs, x) || !(length2(x) <= 4 * edge2)) return endpoint(true);
         best.place = x;

@@ -1,0 +1,140 @@
+// SPDX-FileCopyrightText: 2026 The vsplit authors
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <tbb/global_control.h>
+
+#include <chrono>
+#include <memory>
+#include <optional>
+
+#include "command.hpp"
+#include "input.hpp"
+#include "vsplit/bake/collapse.hpp"
+#include "vsplit/write.hpp"
+
+namespace vsplit::app {
+namespace {
+
+struct BakeCommand {
+    Common common;
+    InputOptions input;
+    Output output;
+    std::string cost = "quadric", placement = "optimal";
+    std::vector<std::string> locks;
+    WriteOptions write;
+
+    int run() const;
+    /// The lock list as options; the reason if one is unknown.
+    std::optional<std::string> set_locks(bake::CollapseOptions& options) const;
+};
+
+std::optional<std::string> BakeCommand::set_locks(bake::CollapseOptions& options) const {
+    for (const std::string& lock : locks) {
+        if (lock == "boundary") {
+            options.lock_boundary = true;
+        } else if (lock.rfind("features=", 0) == 0) {
+            char* end = nullptr;
+            const double degrees = std::strtod(lock.c_str() + 9, &end);
+            if (*end != 0 || end == lock.c_str() + 9 || !(degrees > 0 && degrees < 180)) return "--lock features=ANGLE wants degrees between 0 and 180";
+            options.lock_features_degrees = degrees;
+        } else {
+            return "--lock knows boundary and features=ANGLE, not " + lock;
+        }
+    }
+    return std::nullopt;
+}
+
+int BakeCommand::run() const {
+    using Clock = std::chrono::steady_clock;
+    const auto start = Clock::now();
+    std::optional<tbb::global_control> limit;
+    if (common.threads > 0) limit.emplace(tbb::global_control::max_allowed_parallelism, std::size_t(common.threads));
+    bake::CollapseOptions options;
+    options.cost = cost == "paper" ? bake::Cost::kPaper : bake::Cost::kQuadric;
+    options.placement = placement == "endpoint" ? bake::Placement::kEndpoint : bake::Placement::kOptimal;
+    if (const auto reason = set_locks(options)) return fail_usage(*reason);
+    if (const int refused = check_output(output)) return refused;
+
+    int exit = kDone;
+    auto file = load_mesh(input, exit);
+    if (!file) return exit;
+    const bake::MeshSurvey survey = bake::survey_mesh(file->mesh);
+    ProgressBar bar(common);
+    auto result = bake::collapse(file->mesh, options, bar.callback());
+    if (!result) return fail_input(input.path, result.error());
+    const std::size_t triangles = file->mesh.triangles.size();
+    file->mesh = {};
+    auto bytes = write_progressive_mesh(result->mesh, write);
+    if (!bytes) return fail_output(output.path, bytes.error());
+    if (const int failed = write_output(output, *bytes)) return failed;
+
+    const ProgressiveMesh& mesh = result->mesh;
+    const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    if (common.json) {
+        Json json = {{"input", input.path},
+                     {"output", output.path},
+                     {"read", to_json(file->report)},
+                     {"mesh", to_json(survey)},
+                     {"ratio_1_triangles", triangles},
+                     {"base", {{"vertices", mesh.base_vertices}, {"triangles", mesh.base_triangles}, {"error", error_at(mesh, 0)}}},
+                     {"splits", mesh.splits.size()},
+                     {"components_vanished", result->report.components_vanished},
+                     {"fixed_vertices", result->report.fixed_vertices},
+                     {"stopped_by", result->report.stopped_by},
+                     {"weights", !mesh.weights.empty()},
+                     {"bytes", bytes->size()},
+                     {"seconds", seconds},
+                     {"collapse_cpu_seconds", result->report.collapse_cpu_seconds},
+                     {"calibrate_cpu_seconds", result->report.calibrate_cpu_seconds},
+                     {"peak_memory_bytes", std::uint64_t(usage.ru_maxrss) * 1024}};
+        if (!common.quiet) print_json(json);
+        return kDone;
+    }
+    say(common, fmt::format("{}: {} triangles, {} vertices, {} components, {} boundary edges, {} non-manifold edges ({})", input.path,
+                            with_commas(survey.triangles), with_commas(survey.vertices), with_commas(survey.components),
+                            with_commas(survey.boundary_edges), with_commas(survey.non_manifold_edges), file->report.format));
+    for (const std::string& line : describe(file->report)) say(common, "  " + line);
+    if (survey.duplicate_triangles) say(common, fmt::format("  {} duplicate triangles, kept", with_commas(survey.duplicate_triangles)));
+    if (survey.zero_area_triangles) say(common, fmt::format("  {} triangles without area, kept", with_commas(survey.zero_area_triangles)));
+    say(common, fmt::format("{}: {} splits from a base of {} triangles, {} bytes, {:.1f} bits a vertex, in {:.2f} s", output.path,
+                            with_commas(mesh.splits.size()), with_commas(mesh.base_triangles), with_commas(bytes->size()),
+                            8.0 * double(bytes->size()) / double(std::max<std::size_t>(mesh.positions.size(), 1)), seconds));
+    if (mesh.base_vertices > 64 * std::max<std::uint64_t>(result->report.components, 1))
+        say(common, "  no coarser base: " + result->report.stopped_by);
+    return kDone;
+}
+
+}  // namespace
+
+void add_bake(CLI::App& app, int& exit) {
+    auto command = std::make_shared<BakeCommand>();
+    CLI::App* sub = app.add_subcommand("bake", "Record the full collapse sequence of a mesh or scene as one .pmesh");
+    sub->footer(
+        "Examples:\n"
+        "  vsplit bake bunny.obj -o bunny.pmesh\n"
+        "  vsplit bake hero.glb --weights COLOR_0.r -o hero.pmesh     painted red = keep\n"
+        "  vsplit bake scan.ply --weights scan-weights.txt --cost paper -o scan.pmesh\n"
+        "Reads OBJ, PLY, OFF, STL, glTF and GLB.");
+    sub->add_option("input", command->input.path, "Mesh or scene")->required()->type_name("IN");
+    command->output.add_to(*sub, "The .pmesh to write");
+    command->input.add_to(*sub);
+    sub->add_option("--cost", command->cost, "What a collapse costs: quadric, or paper (docs/collapse.md)")
+        ->check(CLI::IsMember({"quadric", "paper"}))
+        ->capture_default_str();
+    sub->add_option("--placement", command->placement, "Where the vertex that remains is put: optimal, or endpoint")
+        ->check(CLI::IsMember({"optimal", "endpoint"}))
+        ->capture_default_str();
+    sub->add_option("--lock", command->locks, "What never changes: boundary, features=ANGLE (degrees between triangles); may be repeated")
+        ->type_name("WHAT")
+        ->allow_extra_args(false);
+    sub->add_option("--block-bytes", command->write.block_bytes, "Size that blocks of splits aim at")
+        ->check(CLI::Range(1024, 1 << 24))
+        ->capture_default_str();
+    command->common.add_to(*sub);
+    sub->callback([command, &exit] { exit = command->run(); });
+}
+
+}  // namespace vsplit::app
