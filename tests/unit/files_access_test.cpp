@@ -29,7 +29,8 @@ struct Folder {
     }
     std::string operator/(const char* name) const { return (path / name).string(); }
     std::size_t count() const {
-        return static_cast<std::size_t>(std::distance(fs::directory_iterator(path), fs::directory_iterator()));
+        return static_cast<std::size_t>(
+            std::distance(fs::directory_iterator(path), fs::directory_iterator()));
     }
 };
 
@@ -126,5 +127,6 @@ TEST_CASE("Devices are written straight") {
     CHECK(write_file("/dev/null", bytes_of(100, 0), false).ok());
     CHECK(read_file("/dev/null")->empty());
     // A full device takes nothing, and that is an error.
-    if (fs::exists("/dev/full")) CHECK(write_file("/dev/full", bytes_of(100, 0), false).error().code == ErrorCode::kIo);
+    if (fs::exists("/dev/full"))
+        CHECK(write_file("/dev/full", bytes_of(100, 0), false).error().code == ErrorCode::kIo);
 }

@@ -34,7 +34,8 @@ double volume(const Mesh& mesh) {
     double sum = 0;
     for (const Triangle& t : mesh.triangles) {
         const Float3 a = mesh.positions[t[0]], b = mesh.positions[t[1]], c = mesh.positions[t[2]];
-        sum += double(a.x) * (double(b.y) * c.z - double(b.z) * c.y) + double(a.y) * (double(b.z) * c.x - double(b.x) * c.z) +
+        sum += double(a.x) * (double(b.y) * c.z - double(b.z) * c.y) +
+               double(a.y) * (double(b.z) * c.x - double(b.x) * c.z) +
                double(a.z) * (double(b.x) * c.y - double(b.y) * c.x);
     }
     return sum / 6;
@@ -108,7 +109,8 @@ TEST_CASE("The ocean is one sheet with one boundary") {
         std::size_t folded = 0;
         for (const Triangle& t : mesh.triangles) {
             const Float3 a = mesh.positions[t[0]], b = mesh.positions[t[1]], c = mesh.positions[t[2]];
-            folded += (double(b.z) - a.z) * (double(c.x) - a.x) - (double(b.x) - a.x) * (double(c.z) - a.z) <= 0;
+            folded +=
+                (double(b.z) - a.z) * (double(c.x) - a.x) - (double(b.x) - a.x) * (double(c.z) - a.z) <= 0;
         }
         CHECK(folded == 0);
     }
@@ -150,7 +152,8 @@ TEST_CASE("Sample points are exact in number, evenly spread, and on the surface"
 
 TEST_CASE("Samples do not depend on the number of threads") {
     const auto make = [](std::size_t threads) {
-        const oneapi::tbb::global_control limit(oneapi::tbb::global_control::max_allowed_parallelism, threads);
+        const oneapi::tbb::global_control limit(oneapi::tbb::global_control::max_allowed_parallelism,
+                                                threads);
         return std::tuple(make_sample_mesh(Sample::kWhale, 5000), make_sample_mesh(Sample::kOcean, 5000),
                           make_sample_points(Sample::kWhale, 1000), make_sample_points(Sample::kOcean, 1000));
     };
