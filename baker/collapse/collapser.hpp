@@ -4,6 +4,7 @@
 // The loop: cheapest edge first, guarded, recorded.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -30,6 +31,7 @@ class Collapser {
 
   private:
     using Bucket = BucketQueue::Bucket;
+    static constexpr float kNeverCost = std::numeric_limits<float>::infinity();
 
     /// An edge of the vertex at hand, placed and priced.
     struct Option {
@@ -38,17 +40,32 @@ class Collapser {
         Candidate candidate;
     };
 
+    /// The edge for which a vertex waits, and its cost when it was last looked at.
+    struct Target {
+        std::uint32_t vertex = kNoVertex;
+        float cost = kNeverCost;
+        void improve(std::uint32_t other, float price) {
+            if (price < cost || (price == cost && price < kNeverCost && other < vertex))
+                *this = {other, price};
+        }
+    };
+
     void lock(const Mesh& mesh);
     Candidate evaluate(std::uint32_t u, std::uint32_t v, Fold fold) const;
+    /// Each edge is priced once: for the end that comes first, which waits in the queue with it.
+    static bool owns(std::uint32_t u, std::uint32_t v) { return u < v; }
     void list_options(std::uint32_t u);
-    float cheapest(std::uint32_t u);
+    void find_target(std::uint32_t u);
     void prefetch() const;
     void process(std::uint32_t u, Bucket bucket);
     void process_component(std::uint32_t component, Bucket bucket);
     /// True if it was done; false sets `cost` to what it has to wait for (infinity: never as things are).
     bool attempt(std::uint32_t u, const Option& option, Bucket bucket, float& cost);
     double deviation(const EdgeStar& star, Double3 place, Float3& witness, float& place_deviation) const;
-    void apply(const EdgeStar& star, const Option& option, Float3 place, Float3 witness, float place_deviation, float error);
+    void apply(const EdgeStar& star, const Option& option, Float3 place, Float3 witness,
+               float place_deviation, float error);
+    /// After a collapse: prices the new vertex's edges, and offers them to those neighbours who own them.
+    void reprice(std::uint32_t parent, std::uint32_t child, Bucket now);
     std::uint32_t component_item(std::uint32_t component) const { return mesh_.vertex_count() + component; }
 
     const CollapseOptions& options_;
@@ -60,15 +77,15 @@ class Collapser {
     std::unique_ptr<PaperCost> paper_;
     Strictness strictness_;
     std::vector<VertexHistory> histories_;
-    std::vector<float> weights_;          // empty: none painted
-    std::vector<std::uint32_t> targets_;  // cheapest edge, or kNoVertex: list all again
-    float error_ = 0;                     // the largest so far, working units
+    std::vector<float> weights_;   // empty: none painted
+    std::vector<Target> targets_;  // kNoVertex: list all again
+    float error_ = 0;              // the largest so far, working units
     std::uint64_t vanished_ = 0;
 
     std::vector<Option> listed_;
     std::vector<Neighbour> ring_;
     EdgeStar star_;
-    std::vector<std::uint32_t> touched_;
+    std::vector<std::uint32_t> touched_;  // the ring of the new vertex
 };
 
 }  // namespace vsplit::bake
