@@ -64,9 +64,9 @@ Collapser::Collapser(const Mesh& mesh, const CollapseOptions& options)
                           for (std::uint32_t v = range.begin(); v < range.end(); ++v) {
                               if (mesh_.kind(v) == VertexKind::kDead) continue;
                               rebuild_shape(mesh_, v, options_.boundary_weight, scratch);
-                              std::copy_n(mesh_.shape(v).area, 3, histories_[v].normal);
+                              std::copy_n(mesh_.vertex(v).area, 3, histories_[v].normal);
                               if (!weights_.empty() && std::isfinite(weights_[v]))
-                                  mesh_.shape(v).weight = weights_[v];
+                                  mesh_.vertex(v).weight = weights_[v];
                               histories_[v].witness = to_float(mesh_.position(v));
                           }
                       });
@@ -105,41 +105,37 @@ Candidate Collapser::evaluate(std::uint32_t u, std::uint32_t v, Fold fold) const
     if (paper_) {
         thread_local EdgeStar star;
         star.gather(mesh_, u, v);
-        return paper_->evaluate(mesh_, star, fold, options_.placement, double(mesh_.shape(u).weight),
-                                double(mesh_.shape(v).weight));
+        return paper_->evaluate(mesh_, star, fold, options_.placement, double(mesh_.vertex(u).weight),
+                                double(mesh_.vertex(v).weight));
     }
-    const EdgeQuadric edge(mesh_.position(u), mesh_.position(v), mesh_.shape(u), mesh_.shape(v), options_);
-    Candidate candidate = fold == Fold::kIntoFirst                    ? edge.first()
-                          : fold == Fold::kIntoSecond                 ? edge.second()
-                          : options_.placement == Placement::kOptimal ? edge.best()
-                                                                      : edge.endpoint(false);
-    candidate.cost = std::max(candidate.cost, 0.0) + edge.tie_break();
-    return candidate;
+    const EdgeQuadric<double> edge(shape_of(mesh_, u), shape_of(mesh_, v), options_);
+    const auto placed = fold == Fold::kIntoFirst                    ? edge.end(-1)
+                        : fold == Fold::kIntoSecond                 ? edge.end(1)
+                        : options_.placement == Placement::kOptimal ? edge.best()
+                                                                    : edge.better_end();
+    return {edge.middle() + placed.place, edge.price(placed.cost)};
 }
 
-void Collapser::list_options(std::uint32_t u) {
-    listed_.clear();
-    if (mesh_.star(u).size() > strictness_.max_valence) return;
-    visit_neighbours(mesh_, u, ring_, [&](std::uint32_t v) {
-        if (!owns(u, v)) return;
-        const Fold fold = fold_rule(mesh_, u, v);
-        if (fold != Fold::kNever) listed_.push_back({v, fold, evaluate(u, v, fold)});
-    });
-    std::sort(listed_.begin(), listed_.end(), [](const Option& a, const Option& b) {
-        return a.candidate.cost != b.candidate.cost ? a.candidate.cost < b.candidate.cost : a.other < b.other;
-    });
+void Collapser::price(std::uint32_t u, EdgeList& list) const {
+    list.costs.resize(list.others.size());
+    const bool optimal = !paper_ && options_.placement == Placement::kOptimal;
+    if (optimal) price_edges(mesh_, u, list.others, options_, list.costs.data());
+    for (std::size_t i = 0; i < list.others.size(); ++i) {
+        if (list.folds[i] == Fold::kNever)
+            list.costs[i] = kNeverCost;
+        else if (!optimal || list.folds[i] != Fold::kAnywhere)
+            list.costs[i] = float(evaluate(u, list.others[i], list.folds[i]).cost);
+    }
 }
 
-void Collapser::find_target(std::uint32_t u) {
-    thread_local std::vector<Neighbour> scratch;
-    Target best;
+void Collapser::list_edges(std::uint32_t u, EdgeList& list) const {
+    list.clear();
     if (mesh_.star(u).size() <= strictness_.max_valence)
-        visit_neighbours(mesh_, u, scratch, [&](std::uint32_t v) {
+        visit_neighbours(mesh_, u, list.scratch, [&](std::uint32_t v) {
             if (!owns(u, v)) return;
-            if (const Fold fold = fold_rule(mesh_, u, v); fold != Fold::kNever)
-                best.improve(v, float(evaluate(u, v, fold).cost));
+            if (const Fold fold = fold_rule(mesh_, u, v); fold != Fold::kNever) list.add(v, fold);
         });
-    targets_[u] = best;
+    price(u, list);
 }
 
 double Collapser::deviation(const EdgeStar& star, Double3 place, Float3& witness,
@@ -188,9 +184,9 @@ bool Collapser::attempt(std::uint32_t u, const Option& option, Bucket bucket, fl
     Float3 witness;
     float place_deviation = 0;
     const double d = deviation(star_, place, witness, place_deviation);
-    const double weight = 0.5 * (double(mesh_.shape(u).weight) + double(mesh_.shape(option.other).weight));
+    const double weight = 0.5 * (double(mesh_.vertex(u).weight) + double(mesh_.vertex(option.other).weight));
     // The same dimension as the cost, so that one factor serves every level: area^0.5 times distance^4.
-    const double size = double(mesh_.shape(u).size) + double(mesh_.shape(option.other).size);
+    const double size = double(mesh_.vertex(u).size) + double(mesh_.vertex(option.other).size);
     const double limit = paper_ ? 0 : options_.deviation_limit * d * d * d * d * std::sqrt(size) * weight;
     cost = float(std::max(option.candidate.cost, limit));
     if (BucketQueue::bucket_of(cost) > bucket) return false;
@@ -211,14 +207,14 @@ void Collapser::apply(const EdgeStar& star, const Option& option, Float3 place, 
     for (const EdgeStar::Wing& wing : star.wings) {
         const TrianglePart before(wing.normal), after(cross(wing.pa - at, wing.pb - at));
         for (const std::uint32_t w : {wing.a, wing.b}) {
-            add_triangle(mesh_.shape(w), before, -1);
-            add_triangle(mesh_.shape(w), after, 1);
+            add_triangle(mesh_.vertex(w), before, -1);
+            add_triangle(mesh_.vertex(w), after, 1);
         }
     }
     for (std::size_t i = 0; i < star.opposite.size(); ++i) {
         Double3 n = cross(star.pv - star.pu, star.opposite_places[i] - star.pu);
         if (!star.forward[i]) n = n * -1.0;
-        add_triangle(mesh_.shape(star.opposite[i]), TrianglePart(n), -1);
+        add_triangle(mesh_.vertex(star.opposite[i]), TrianglePart(n), -1);
     }
 
     error_ = std::max(error_, error);
@@ -234,25 +230,28 @@ void Collapser::apply(const EdgeStar& star, const Option& option, Float3 place, 
     for (std::size_t i = 0; i < 3; ++i) history.normal[i] += histories_[child].normal[i];
     history.deviation = place_deviation;
     history.witness = witness;
-    VertexShape& shape = mesh_.shape(parent);
-    shape.weight = 0.5f * (shape.weight + mesh_.shape(child).weight);
+    Vertex& shape = mesh_.vertex(parent);
+    shape.weight = 0.5f * (shape.weight + mesh_.vertex(child).weight);
     if (!weights_.empty()) weights_[parent] = 0.5f * (weights_[parent] + weights_[child]);
     if (paper_) paper_->merge(parent, child);
     rebuild_shape(mesh_, parent, options_.boundary_weight, ring_);
 
-    touched_.clear();
-    visit_neighbours(mesh_, parent, ring_, [&](std::uint32_t w) { touched_.push_back(w); });
-    for (const std::uint32_t w : touched_)
+    ring_edges_.clear();
+    visit_neighbours(mesh_, parent, ring_, [&](std::uint32_t w) { ring_edges_.add(w, Fold::kNever); });
+    for (const std::uint32_t w : ring_edges_.others)
         if (mesh_.kind(w) != VertexKind::kInner) rebuild_shape(mesh_, w, options_.boundary_weight, ring_);
     queue_.remove(child);
     reprice(parent, child, BucketQueue::bucket_of(float(option.candidate.cost)));
 }
 
 void Collapser::reprice(std::uint32_t parent, std::uint32_t child, Bucket now) {
+    for (std::size_t i = 0; i < ring_edges_.others.size(); ++i)
+        ring_edges_.folds[i] = fold_rule(mesh_, parent, ring_edges_.others[i]);
+    price(parent, ring_edges_);
     Target best;
-    for (const std::uint32_t w : touched_) {
-        const Fold fold = fold_rule(mesh_, parent, w);
-        const float cost = fold == Fold::kNever ? kNeverCost : float(evaluate(parent, w, fold).cost);
+    for (std::size_t i = 0; i < ring_edges_.others.size(); ++i) {
+        const std::uint32_t w = ring_edges_.others[i];
+        const float cost = ring_edges_.costs[i];
         Target& other = targets_[w];
         if (owns(parent, w)) {
             best.improve(w, cost);
@@ -294,19 +293,24 @@ void Collapser::process(std::uint32_t u, Bucket bucket) {
             }
         }
     }
-    list_options(u);
+    list_edges(u, listed_);
     Target wait;
-    for (std::size_t i = 0; i < listed_.size(); ++i) {
-        const Option option = listed_[i];
-        float cost = float(option.candidate.cost);
-        const bool due = BucketQueue::bucket_of(cost) <= bucket;
+    for (;;) {
+        Target next;
+        std::size_t at = 0;
+        for (std::size_t i = 0; i < listed_.others.size(); ++i)
+            if (next.improve(listed_.others[i], listed_.costs[i])) at = i;
+        if (next.vertex == kNoVertex) break;
+        listed_.costs[at] = kNeverCost;  // not again
+        const bool due = BucketQueue::bucket_of(next.cost) <= bucket;
         if (due) {
-            if (option.other == tried.vertex)
-                cost = tried.cost;
-            else if (attempt(u, option, bucket, cost))
+            if (next.vertex == tried.vertex)
+                next.cost = tried.cost;
+            else if (attempt(u, {next.vertex, listed_.folds[at], evaluate(u, next.vertex, listed_.folds[at])},
+                             bucket, next.cost))
                 return;
         }
-        wait.improve(option.other, cost);
+        wait.improve(next.vertex, next.cost);
         if (!due) break;
     }
     targets_[u] = wait;
@@ -342,8 +346,13 @@ bool Collapser::run(const Progress& progress) {
     if (mesh_.triangle_count() == 0) return true;
     tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, mesh_.vertex_count(), 2048),
                       [&](const tbb::blocked_range<std::uint32_t>& range) {
-                          for (std::uint32_t v = range.begin(); v < range.end(); ++v)
-                              if (mesh_.kind(v) != VertexKind::kDead) find_target(v);
+                          EdgeList list;
+                          for (std::uint32_t v = range.begin(); v < range.end(); ++v) {
+                              if (mesh_.kind(v) == VertexKind::kDead) continue;
+                              list_edges(v, list);
+                              for (std::size_t i = 0; i < list.others.size(); ++i)
+                                  targets_[v].improve(list.others[i], list.costs[i]);
+                          }
                       });
     for (std::uint32_t v = 0; v < mesh_.vertex_count(); ++v)
         if (targets_[v].vertex != kNoVertex) queue_.push(v, BucketQueue::bucket_of(targets_[v].cost));

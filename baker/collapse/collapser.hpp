@@ -40,13 +40,30 @@ class Collapser {
         Candidate candidate;
     };
 
+    /// Edges of one vertex with their costs.
+    struct EdgeList {
+        std::vector<std::uint32_t> others;
+        std::vector<Fold> folds;
+        std::vector<float> costs;
+        std::vector<Neighbour> scratch;
+        void clear() {
+            others.clear();
+            folds.clear();
+        }
+        void add(std::uint32_t other, Fold fold) {
+            others.push_back(other);
+            folds.push_back(fold);
+        }
+    };
+
     /// The edge for which a vertex waits, and its cost when it was last looked at.
     struct Target {
         std::uint32_t vertex = kNoVertex;
         float cost = kNeverCost;
-        void improve(std::uint32_t other, float price) {
-            if (price < cost || (price == cost && price < kNeverCost && other < vertex))
-                *this = {other, price};
+        bool improve(std::uint32_t other, float price) {
+            const bool better = price < cost || (price == cost && price < kNeverCost && other < vertex);
+            if (better) *this = {other, price};
+            return better;
         }
     };
 
@@ -54,8 +71,10 @@ class Collapser {
     Candidate evaluate(std::uint32_t u, std::uint32_t v, Fold fold) const;
     /// Each edge is priced once: for the end that comes first, which waits in the queue with it.
     static bool owns(std::uint32_t u, std::uint32_t v) { return u < v; }
-    void list_options(std::uint32_t u);
-    void find_target(std::uint32_t u);
+    /// Prices all edges of the list, which are those of `u`.
+    void price(std::uint32_t u, EdgeList& list) const;
+    /// The edges that `u` owns, with their costs.
+    void list_edges(std::uint32_t u, EdgeList& list) const;
     void prefetch() const;
     void process(std::uint32_t u, Bucket bucket);
     void process_component(std::uint32_t component, Bucket bucket);
@@ -82,10 +101,10 @@ class Collapser {
     float error_ = 0;              // the largest so far, working units
     std::uint64_t vanished_ = 0;
 
-    std::vector<Option> listed_;
+    EdgeList listed_;
     std::vector<Neighbour> ring_;
     EdgeStar star_;
-    std::vector<std::uint32_t> touched_;  // the ring of the new vertex
+    EdgeList ring_edges_;  // of the new vertex
 };
 
 }  // namespace vsplit::bake
