@@ -225,10 +225,28 @@ void Collapser::reprice(std::uint32_t parent, std::uint32_t child, Bucket now) {
 void Collapser::prefetch() const {
     // A pipeline over the items to come: each step needs what the one before has fetched.
     const std::uint32_t vertices = mesh_.vertex_count();
-    if (const std::uint32_t v = queue_.peek(12); v < vertices) mesh_.prefetch_vertex(v);
-    if (const std::uint32_t v = queue_.peek(9); v < vertices) mesh_.prefetch_star(v);
-    if (const std::uint32_t v = queue_.peek(6); v < vertices) mesh_.prefetch_triangles(v);
-    if (const std::uint32_t v = queue_.peek(3); v < vertices) mesh_.prefetch_neighbours(v);
+    const auto later = [&](std::size_t ahead, const auto& of_vertex, const auto& of_target) {
+        const std::uint32_t v = queue_.peek(ahead);
+        if (v >= vertices) return;
+        of_vertex(v);
+        if (const std::uint32_t target = targets_[v].vertex; target < vertices) of_target(target);
+    };
+    const auto nothing = [](std::uint32_t) {};
+    const auto neighbours = [&](std::uint32_t v) {
+        for (const std::uint32_t t : mesh_.star(v))
+            for (const std::uint32_t w : mesh_.triangle(t)) {
+                mesh_.prefetch_vertex(w);
+                __builtin_prefetch(&histories_[w]);
+            }
+    };
+    if (const std::uint32_t v = queue_.peek(20); v < vertices) {
+        mesh_.prefetch_vertex(v);
+        __builtin_prefetch(&targets_[v]);
+    }
+    later(15, [&](std::uint32_t v) { mesh_.prefetch_star(v); }, [&](std::uint32_t v) { mesh_.prefetch_vertex(v); });
+    later(10, [&](std::uint32_t v) { mesh_.prefetch_triangles(v); }, [&](std::uint32_t v) { mesh_.prefetch_star(v); });
+    later(6, neighbours, [&](std::uint32_t v) { mesh_.prefetch_triangles(v); });
+    later(3, nothing, neighbours);
 }
 
 void Collapser::process(std::uint32_t u, Bucket bucket) {

@@ -106,7 +106,6 @@ StarMesh::StarMesh(const Mesh& mesh) {
 }
 
 void StarMesh::classify() {
-    kinds_.assign(vertex_count(), VertexKind::kFixed);
     tbb::parallel_for(
         tbb::blocked_range<std::uint32_t>(0, vertex_count(), 4096),
         [&](const tbb::blocked_range<std::uint32_t>& range) {
@@ -114,7 +113,7 @@ void StarMesh::classify() {
             std::vector<std::uint32_t> roots;
             for (std::uint32_t v = range.begin(); v < range.end(); ++v) {
                 if (vertices_[v].star_size == 0) {
-                    kinds_[v] = VertexKind::kDead;
+                    vertices_[v].kind = VertexKind::kDead;
                     continue;
                 }
                 neighbours_of(*this, v, ring);
@@ -155,11 +154,11 @@ void StarMesh::classify() {
                 bool connected = true;
                 for (std::uint32_t i = 1; i < ring.size(); ++i)
                     connected &= find_root(roots, i) == find_root(roots, 0);
-                if (connected) kinds_[v] = special == 0 ? VertexKind::kInner : VertexKind::kCurve;
+                if (connected) vertices_[v].kind = special == 0 ? VertexKind::kInner : VertexKind::kCurve;
             }
         });
     live_vertices_ = static_cast<std::uint32_t>(
-        std::count_if(kinds_.begin(), kinds_.end(), [](VertexKind k) { return k != VertexKind::kDead; }));
+        std::count_if(vertices_.begin(), vertices_.end(), [](const Vertex& v) { return v.kind != VertexKind::kDead; }));
 }
 
 void StarMesh::fold(std::uint32_t child, std::uint32_t parent, std::vector<std::uint32_t>& corners_changed,
@@ -199,23 +198,22 @@ void StarMesh::fold(std::uint32_t child, std::uint32_t parent, std::vector<std::
     }
     vertices_[parent].star_size = size;
     vertices_[child].star_size = 0;
-    kinds_[child] = VertexKind::kDead;
+    vertices_[child].kind = VertexKind::kDead;
     --live_vertices_;
 
     for (const std::uint32_t t : gone)
         for (const std::uint32_t w : triangles_[t])
             if (w != child && w != parent) {
                 auto* begin = arena_.data() + vertices_[w].star_begin;
-                std::uint32_t& n = vertices_[w].star_size;
-                auto* at = std::find(begin, begin + n, t);
-                *at = begin[--n];
+                                auto* at = std::find(begin, begin + vertices_[w].star_size, t);
+                *at = begin[--vertices_[w].star_size];
             }
     live_triangles_ -= static_cast<std::uint32_t>(gone.size());
 }
 
 void StarMesh::vanish(std::span<const std::uint32_t> vertices, std::span<const std::uint32_t> triangles) {
     for (const std::uint32_t v : vertices) {
-        kinds_[v] = VertexKind::kDead;
+        vertices_[v].kind = VertexKind::kDead;
         vertices_[v].star_size = 0;
     }
     live_vertices_ -= static_cast<std::uint32_t>(vertices.size());

@@ -14,16 +14,6 @@
 
 namespace vsplit::bake {
 
-/// How a vertex may collapse, after Dey, Edelsbrunner, Guha and Nekhayev, Topology preserving edge
-/// contraction (1999), section 3.
-enum class VertexKind : std::uint8_t {
-    kInner,  ///< One closed fan of triangles: may fold into any neighbour.
-    kCurve,  ///< On exactly two special edges of one kind (a boundary, a non-manifold crease): folds along
-             ///< them only.
-    kFixed,  ///< Anything else, or locked: stays where it is; others may fold into it.
-    kDead,   ///< Collapsed.
-};
-
 /// Vertices and triangles are numbered along a Morton curve, so that neighbours share cache lines.
 /// Positions stay the input's floats; working coordinates are exact differences to the centre, times a power
 /// of two.
@@ -69,8 +59,8 @@ class StarMesh {
     }
     const Vertex& vertex(std::uint32_t v) const { return vertices_[v]; }
     Vertex& vertex(std::uint32_t v) { return vertices_[v]; }
-    VertexKind kind(std::uint32_t v) const { return kinds_[v]; }
-    void fix(std::uint32_t v) { kinds_[v] = VertexKind::kFixed; }
+    VertexKind kind(std::uint32_t v) const { return vertices_[v].kind; }
+    void fix(std::uint32_t v) { vertices_[v].kind = VertexKind::kFixed; }
 
     /// Fetches ahead: the vertex; then the list of its star; then its triangles; then its neighbours.
     void prefetch_vertex(std::uint32_t v) const { __builtin_prefetch(&vertices_[v]); }
@@ -105,7 +95,6 @@ class StarMesh {
     std::vector<Vertex> vertices_;
     std::vector<Triangle> triangles_;
     std::vector<std::uint32_t> arena_;
-    std::vector<VertexKind> kinds_;
     std::vector<std::uint32_t> input_vertices_;
     Double3 centre_;
     double scale_ = 1;

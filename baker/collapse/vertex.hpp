@@ -11,6 +11,16 @@
 
 namespace vsplit::bake {
 
+/// How a vertex may collapse, after Dey, Edelsbrunner, Guha and Nekhayev, Topology preserving edge
+/// contraction (1999), section 3.
+enum class VertexKind : std::uint8_t {
+    kInner,  ///< One closed fan of triangles: may fold into any neighbour.
+    kCurve,  ///< On exactly two special edges of one kind (a boundary, a non-manifold crease): folds along
+             ///< them only.
+    kFixed,  ///< Anything else, or locked: stays where it is; others may fold into it.
+    kDead,   ///< Collapsed.
+};
+
 /// All that pricing an edge needs of an end: one cache line, since what the loop waits for is memory. The
 /// order lets four vertices be read at once, in four transpositions.
 struct alignas(64) Vertex {
@@ -21,9 +31,10 @@ struct alignas(64) Vertex {
     float area[3] = {};     ///< Sum over triangles of the area vector.
     float size = 0;         ///< Sum over triangles of the area.
     std::uint32_t star_begin = 0;  ///< In the arena of triangle lists.
-    std::uint32_t star_size = 0;
+    std::uint32_t star_size : 30 = 0;
+    VertexKind kind : 2 = VertexKind::kFixed;
 };
-static_assert(sizeof(Vertex) == 64 && offsetof(Vertex, quadric) == 16 && offsetof(Vertex, star_begin) == 56);
+static_assert(sizeof(Vertex) == 64 && offsetof(Vertex, quadric) == 16);
 
 /// What only a collapse itself needs to know of the input around a vertex.
 struct alignas(32) VertexHistory {
