@@ -204,16 +204,18 @@ void Collapser::reprice(std::uint32_t parent, std::uint32_t child, Bucket now) {
         const std::uint32_t w = ring_edges_.others[i];
         const float cost = ring_edges_.costs[i];
         Target& other = targets_[w];
-        if (owns(parent, w)) {
-            best.improve(w, cost);
-        } else if (other.vertex != parent && other.vertex != child && cost < other.cost) {
-            other = {parent, cost};
-            queue_.push(w, BucketQueue::bucket_of(cost));
+        if (owns(parent, w)) best.offer(w, cost);
+        if (!queue_.contains(w)) {
+            // What stopped it may be gone.
+            other.vertex = kNoVertex;
+            queue_.push(w, now);
             continue;
         }
-        // What it was for is gone, or what stopped it may be: it lists its edges when its turn comes.
-        if (other.vertex == parent || other.vertex == child || !queue_.contains(w)) other.vertex = kNoVertex;
-        if (!queue_.contains(w)) queue_.push(w, now);
+        const bool gone = other.vertex == parent || other.vertex == child;
+        if (gone) other = {kNoVertex, other.runner_up, other.runner_up};
+        if (owns(w, parent)) other.offer(parent, cost);
+        if (gone || other.vertex == parent)
+            queue_.push(w, other.cost < kNeverCost ? BucketQueue::bucket_of(other.cost) : now);
     }
     targets_[parent] = best;
     if (best.vertex != kNoVertex)
@@ -236,15 +238,19 @@ void Collapser::prefetch() const {
         for (const std::uint32_t t : mesh_.star(v))
             for (const std::uint32_t w : mesh_.triangle(t)) {
                 mesh_.prefetch_vertex(w);
-                __builtin_prefetch(&histories_[w]);
+                fetch_ahead(&histories_[w]);
             }
     };
     if (const std::uint32_t v = queue_.peek(20); v < vertices) {
         mesh_.prefetch_vertex(v);
-        __builtin_prefetch(&targets_[v]);
+        fetch_ahead(&targets_[v]);
     }
-    later(15, [&](std::uint32_t v) { mesh_.prefetch_star(v); }, [&](std::uint32_t v) { mesh_.prefetch_vertex(v); });
-    later(10, [&](std::uint32_t v) { mesh_.prefetch_triangles(v); }, [&](std::uint32_t v) { mesh_.prefetch_star(v); });
+    later(
+        15, [&](std::uint32_t v) { mesh_.prefetch_star(v); },
+        [&](std::uint32_t v) { mesh_.prefetch_vertex(v); });
+    later(
+        10, [&](std::uint32_t v) { mesh_.prefetch_triangles(v); },
+        [&](std::uint32_t v) { mesh_.prefetch_star(v); });
     later(6, neighbours, [&](std::uint32_t v) { mesh_.prefetch_triangles(v); });
     later(3, nothing, neighbours);
 }
@@ -252,13 +258,20 @@ void Collapser::prefetch() const {
 void Collapser::process(std::uint32_t u, Bucket bucket) {
     if (mesh_.kind(u) == VertexKind::kDead) return;
     // Most often the target is still the best; its price is that of today.
-    Target tried;
-    if (const std::uint32_t v = targets_[u].vertex; v != kNoVertex && mesh_.kind(v) != VertexKind::kDead) {
-        if (const Fold fold = fold_rule(mesh_, u, v); fold != Fold::kNever) {
-            const Option option{v, fold, evaluate(u, v, fold)};
-            if (BucketQueue::bucket_of(float(option.candidate.cost)) <= bucket) {
-                tried.vertex = v;
-                if (attempt(u, option, bucket, tried.cost)) return;
+    std::uint32_t tried = kNoVertex;
+    float tried_cost = kNeverCost;
+    Target& target = targets_[u];
+    if (target.vertex != kNoVertex && mesh_.kind(target.vertex) != VertexKind::kDead) {
+        if (const Fold fold = fold_rule(mesh_, u, target.vertex); fold != Fold::kNever) {
+            const Option option{target.vertex, fold, evaluate(u, target.vertex, fold)};
+            const float cost = float(option.candidate.cost);
+            if (BucketQueue::bucket_of(cost) <= bucket) {
+                tried = option.other;
+                if (attempt(u, option, bucket, tried_cost)) return;
+            } else if (cost <= target.runner_up) {
+                target.cost = cost;
+                queue_.push(u, BucketQueue::bucket_of(cost));
+                return;
             }
         }
     }
@@ -266,23 +279,18 @@ void Collapser::process(std::uint32_t u, Bucket bucket) {
     Target wait;
     for (;;) {
         Target next;
-        std::size_t at = 0;
         for (std::size_t i = 0; i < listed_.others.size(); ++i)
-            if (next.improve(listed_.others[i], listed_.costs[i])) at = i;
-        if (next.vertex == kNoVertex) break;
+            next.offer(std::uint32_t(i), listed_.costs[i]);
+        if (next.vertex == kNoVertex || BucketQueue::bucket_of(next.cost) > bucket) break;
+        const std::uint32_t at = next.vertex, v = listed_.others[at];
+        const Fold fold = listed_.folds[at];
+        float cost = tried_cost;
+        if (v != tried && attempt(u, {v, fold, evaluate(u, v, fold)}, bucket, cost)) return;
+        wait.offer(v, cost);
         listed_.costs[at] = kNeverCost;  // not again
-        const bool due = BucketQueue::bucket_of(next.cost) <= bucket;
-        if (due) {
-            if (next.vertex == tried.vertex)
-                next.cost = tried.cost;
-            else if (attempt(u, {next.vertex, listed_.folds[at], evaluate(u, next.vertex, listed_.folds[at])},
-                             bucket, next.cost))
-                return;
-        }
-        wait.improve(next.vertex, next.cost);
-        if (!due) break;
     }
-    targets_[u] = wait;
+    for (std::size_t i = 0; i < listed_.others.size(); ++i) wait.offer(listed_.others[i], listed_.costs[i]);
+    target = wait;
     if (wait.vertex != kNoVertex) queue_.push(u, BucketQueue::bucket_of(wait.cost));
 }
 
@@ -320,7 +328,7 @@ bool Collapser::run(const Progress& progress) {
                               if (mesh_.kind(v) == VertexKind::kDead) continue;
                               list_edges(v, list);
                               for (std::size_t i = 0; i < list.others.size(); ++i)
-                                  targets_[v].improve(list.others[i], list.costs[i]);
+                                  targets_[v].offer(list.others[i], list.costs[i]);
                           }
                       });
     for (std::uint32_t v = 0; v < mesh_.vertex_count(); ++v)
@@ -350,8 +358,7 @@ bool Collapser::run(const Progress& progress) {
         }
         std::uint32_t item = 0;
         Bucket bucket = 0;
-        for (std::uint64_t count = 0; queue_.pop(item, bucket); ++count) {
-            prefetch();
+        for (std::uint64_t count = 0; queue_.pop(item, bucket, [&] { prefetch(); }); ++count) {
             if (item < mesh_.vertex_count())
                 process(item, bucket);
             else

@@ -61,10 +61,13 @@ class Collapser {
     struct Target {
         std::uint32_t vertex = kNoVertex;
         float cost = kNeverCost;
-        bool improve(std::uint32_t other, float price) {
-            const bool better = price < cost || (price == cost && price < kNeverCost && other < vertex);
-            if (better) *this = {other, price};
-            return better;
+        float runner_up =
+            kNeverCost;  ///< The cost of the next best: above it, all edges have to be looked at again.
+        void offer(std::uint32_t other, float price) {
+            if (price < cost || (price == cost && price < kNeverCost && other < vertex))
+                *this = {other, price, cost};
+            else
+                runner_up = std::min(runner_up, price);
         }
     };
 

@@ -38,11 +38,13 @@ class BucketQueue {
     bool contains(std::uint32_t item) const { return slots_[item] != kNone; }
 
     /// Takes the cheapest bucket's items in order: false when nothing is left. An item is out of the queue
-    /// once taken.
-    bool pop(std::uint32_t& item, Bucket& bucket) {
+    /// once taken. `advance` is called at every step towards it, also past what has moved meanwhile.
+    template <class Advance>
+    bool pop(std::uint32_t& item, Bucket& bucket, const Advance& advance) {
         for (;;) {
             while (next_ < snapshot_.size()) {
                 item = snapshot_[next_++];
+                advance();
                 if (slots_[item] != current_) continue;
                 slots_[item] = kNone;
                 bucket = current_;
@@ -53,6 +55,7 @@ class BucketQueue {
             current_ = lowest_;
             snapshot_.swap(buckets_[current_]);
             buckets_[current_].clear();
+            std::erase_if(snapshot_, [&](std::uint32_t i) { return slots_[i] != current_; });
             std::sort(snapshot_.begin(), snapshot_.end());
             next_ = 0;
         }

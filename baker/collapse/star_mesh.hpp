@@ -14,6 +14,13 @@
 
 namespace vsplit::bake {
 
+/// Asks for a cache line. The empty assembly keeps g++ 12 from taking functions that only do this for ones
+/// without effect, whose calls it drops.
+inline void fetch_ahead(const void* line) {
+    __builtin_prefetch(line);
+    asm volatile("");
+}
+
 /// Vertices and triangles are numbered along a Morton curve, so that neighbours share cache lines.
 /// Positions stay the input's floats; working coordinates are exact differences to the centre, times a power
 /// of two.
@@ -62,17 +69,12 @@ class StarMesh {
     VertexKind kind(std::uint32_t v) const { return vertices_[v].kind; }
     void fix(std::uint32_t v) { vertices_[v].kind = VertexKind::kFixed; }
 
-    /// Fetches ahead: the vertex; then the list of its star; then its triangles; then its neighbours.
-    void prefetch_vertex(std::uint32_t v) const { __builtin_prefetch(&vertices_[v]); }
-    void prefetch_star(std::uint32_t v) const { __builtin_prefetch(arena_.data() + vertices_[v].star_begin); }
+    /// Fetches ahead: the vertex; then the list of its star; then its triangles.
+    void prefetch_vertex(std::uint32_t v) const { fetch_ahead(&vertices_[v]); }
+    void prefetch_star(std::uint32_t v) const { fetch_ahead(arena_.data() + vertices_[v].star_begin); }
     void prefetch_triangles(std::uint32_t v) const {
-        for (const std::uint32_t t : star(v)) __builtin_prefetch(&triangles_[t]);
+        for (const std::uint32_t t : star(v)) fetch_ahead(&triangles_[t]);
     }
-    void prefetch_neighbours(std::uint32_t v) const {
-        for (const std::uint32_t t : star(v))
-            for (const std::uint32_t w : triangles_[t]) prefetch_vertex(w);
-    }
-
     /// Twice the area vector of a triangle.
     Double3 normal(const Triangle& t) const {
         const Double3 a = position(t[0]);
