@@ -15,9 +15,9 @@ Error fault(ErrorCode code, std::string message) {
     return {code, std::move(message), Error::kNowhere, 0};
 }
 
-/// The smallest share of a bit that Draco spends on a triangle in practice is far above this (docs/lods.md);
-/// a stream that announces more is made to exhaust memory.
-constexpr std::uint64_t kTrianglesPerByte = 4096;
+/// Draco puts about seven triangles of a flat, regular grid into a byte, and fewer of anything else; a stream
+/// that announces more than this is made to exhaust memory.
+constexpr std::uint64_t kTrianglesPerByte = 1024;
 
 /// The face count that a Draco stream announces, read as its decoder will (Draco bitstream specification 2.2,
 /// sections 3 and 4), so that it can be refused before the decoder allocates for it.

@@ -69,9 +69,10 @@ Result<SoupFile> read_soup(std::span<const std::byte> bytes, std::string_view ex
     const std::span<const std::byte> text = starts_with(bytes, "\xEF\xBB\xBF") ? bytes.subspan(3) : bytes;
     if (is_off(text)) return read_off(text);
     if (is_stl_text(text)) return read_stl_text(text);
-    if (ext == ".stl" || starts_with(bytes, "solid")) return read_stl_binary(bytes);
+    if (starts_with(bytes, "solid")) return read_stl_binary(bytes);
 
     const auto zero = std::find(bytes.begin(), bytes.end(), std::byte{0});
+    if (zero != bytes.end() && ext == ".stl") return read_stl_binary(bytes);
     if (zero != bytes.end())
         return Error{ErrorCode::kMalformed, "binary data, but neither PLY nor STL",
                      static_cast<std::uint64_t>(zero - bytes.begin()), 0};

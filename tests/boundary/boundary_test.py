@@ -19,7 +19,7 @@ ROOMS = [
     # (pattern of the included path, folders that may, name)
     (re.compile(r'^CGAL/'), ('baker/surface/', 'baker/points/', 'tests/unit/surface_', 'tests/unit/points_'), 'CGAL'),
     (re.compile(r'(^|/)tiny_?gltf(_v3)?\.h$'), ('baker/gltf/', 'tests/unit/gltf_'), 'tinygltf'),
-    (re.compile(r'^OpenMesh/'), ('baker/collapse/', 'tests/unit/collapse_'), 'OpenMesh'),
+    (re.compile(r'^OpenMesh/'), ('baker/collapse/', 'tests/unit/collapse_', 'tests/unit/meshes_'), 'OpenMesh'),
     (re.compile(r'^vtk[A-Z]'), ('viewer/desktop/',), 'VTK'),
 ]
 GPL_FOLDERS = ('baker/surface/', 'baker/points/')

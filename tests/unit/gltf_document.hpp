@@ -111,7 +111,7 @@ struct GltfDocument {
 
     static std::vector<std::byte> bytes(const std::string& text) {
         std::vector<std::byte> out(text.size());
-        std::memcpy(out.data(), text.data(), text.size());
+        if (!text.empty()) std::memcpy(out.data(), text.data(), text.size());
         return out;
     }
 };

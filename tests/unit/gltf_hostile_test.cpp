@@ -145,7 +145,8 @@ TEST_CASE("every number and every value of a document replaced by something else
                                       "VEC2",
                                       "MAT4"};
     int read = 0, all = 0;
-    for (const auto& [pointer, value] : document.flatten().items())
+    const json flat = document.flatten();
+    for (const auto& [pointer, value] : flat.items())
         for (const json& other : others) {
             json broken = document;
             broken[json::json_pointer(pointer)] = other;

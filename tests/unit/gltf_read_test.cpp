@@ -34,7 +34,7 @@ Error refuse(const std::vector<std::byte>& bytes, const GltfOptions& options = {
     return out.error();
 }
 
-/// Signed volume is what a mirror must not change in sign.
+/// Positive where a triangle looks along +Z.
 double normal_z(const Mesh& mesh, std::size_t t) {
     const Float3 a = mesh.positions[mesh.triangles[t][0]], b = mesh.positions[mesh.triangles[t][1]],
                  c = mesh.positions[mesh.triangles[t][2]];
@@ -67,7 +67,8 @@ TEST_CASE("lists, strips and fans, indexed or not") {
             const MeshFile out = read(bytes);
             CHECK(out.mesh.triangles == c.expected);
             // All faces of a strip or a fan look the same way.
-            for (std::size_t t = 0; t < out.mesh.triangles.size(); ++t) CHECK(normal_z(out.mesh, t) > 0);
+            for (std::size_t t = 0; t < out.mesh.triangles.size() && c.mode != 4; ++t)
+                CHECK(normal_z(out.mesh, t) > 0);
         }
     }
 }
@@ -343,9 +344,10 @@ TEST_CASE("external buffers: only from the folder, and never from outside of it"
     };
     for (const char* uri : {"a.bin", "sub%20dir/b.bin", "./a.bin"}) CHECK(parse_gltf(with(uri), scene).ok());
     CHECK(refuse(with("a.bin")).code == ErrorCode::kUnsupported);
+    const std::string absolute = (folder / "outside.bin").string();
     for (const std::string uri :
          {"../outside.bin", "sub dir/../../outside.bin", "%2e%2e/outside.bin", "link.bin", "..\\outside.bin",
-          (folder / "outside.bin").c_str(), "file:///etc/passwd", "http://example.org/a.bin", ""}) {
+          absolute.c_str(), "file:///etc/passwd", "http://example.org/a.bin", ""}) {
         CAPTURE(uri);
         const Error error = refuse(with(uri), {}, scene);
         CHECK(error.code == ErrorCode::kUnsupported);
