@@ -69,9 +69,10 @@ TEST_CASE("OpenMesh finds no complex edge or vertex in any level of a manifold m
                 REQUIRE(level.refused == 0);
                 REQUIRE(level.complex == 0);
                 REQUIRE(level.isolated == 0);
-                REQUIRE((level.boundary == 0) == (input.boundary == 0));
                 REQUIRE(level.boundary <= input.boundary);
-                if (result->report.components_vanished == 0) REQUIRE(level.euler == input.euler);
+                if (result->report.components_vanished > 0) continue;
+                REQUIRE((level.boundary == 0) == (input.boundary == 0));
+                REQUIRE(level.euler == input.euler);
             }
         }
     }

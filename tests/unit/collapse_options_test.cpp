@@ -153,7 +153,7 @@ TEST_CASE("A cube keeps its shape by itself down to its corners") {
 TEST_CASE("Law 3: the same bytes for any number of threads, and every time") {
     std::vector<NamedMesh> meshes = mesh_family();
     // Large enough that the loops are cut among threads.
-    Mesh large = make_torus(160, 90);
+    Mesh large = make_torus(110, 60);
     for (std::size_t v = 0; v < large.positions.size(); ++v) large.positions[v].z += 0.01f * float(std::sin(double(v)));
     large.weights = some_weights(large.positions.size());
     meshes.push_back({"large torus", large});
