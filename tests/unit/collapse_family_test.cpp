@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: MIT
 //
 // Geometric and topological truths of every collapse, over the family of meshes, both costs, both placements.
-#include <catch2/catch.hpp>
-
 #include <array>
+#include <catch2/catch.hpp>
 #include <set>
 
 #include "family.hpp"
@@ -49,7 +48,9 @@ void for_all(const Body& body) {
     }
 }
 
-std::array<float, 3> key(const Float3& p) { return {p.x, p.y, p.z}; }
+std::array<float, 3> key(const Float3& p) {
+    return {p.x, p.y, p.z};
+}
 
 }  // namespace
 
@@ -125,8 +126,10 @@ TEST_CASE("Collapse: a ratio is met within one triangle, or one split opens more
             const std::size_t level = level_for_triangles(result.mesh, wanted);
             const std::uint64_t got = triangles_at(result.mesh, level);
             CAPTURE(percent, wanted, got);
-            if (got > wanted) REQUIRE(level == 0);
-            else if (wanted - got > 1) REQUIRE(triangles_at(result.mesh, level + 1) > wanted);
+            if (got > wanted)
+                REQUIRE(level == 0);
+            else if (wanted - got > 1)
+                REQUIRE(triangles_at(result.mesh, level + 1) > wanted);
         }
     });
 }
@@ -147,10 +150,12 @@ TEST_CASE("Collapse: errors fall to 0 and bound the distance of the input's vert
     for_all([](const Mesh& mesh, const Topology& input, const Method&, const bake::CollapseResult& result) {
         const ProgressiveMesh& m = result.mesh;
         REQUIRE(error_at(m, m.splits.size()) == 0);
-        for (std::size_t level = 1; level <= m.splits.size(); ++level) REQUIRE(error_at(m, level) <= error_at(m, level - 1));
+        for (std::size_t level = 1; level <= m.splits.size(); ++level)
+            REQUIRE(error_at(m, level) <= error_at(m, level - 1));
         if (mesh.triangles.size() < 20 || !input.manifold()) return;
         double size = 0;
-        for (const Float3& p : mesh.positions) size = std::max({size, std::abs(double(p.x)), std::abs(double(p.y)), std::abs(double(p.z))});
+        for (const Float3& p : mesh.positions)
+            size = std::max({size, std::abs(double(p.x)), std::abs(double(p.y)), std::abs(double(p.z))});
         for (const std::size_t percent : {60, 40, 10}) {
             const std::size_t level = level_for_triangles(m, mesh.triangles.size() * percent / 100);
             const Mesh now = cut(m, level);

@@ -21,10 +21,13 @@ void for_records(const Body& body) {
     for (auto [name, mesh] : mesh_family())
         for (const bool weighted : {false, true})
             for (const bake::Cost cost : {bake::Cost::kQuadric, bake::Cost::kPaper})
-                for (const bake::Placement placement : {bake::Placement::kOptimal, bake::Placement::kEndpoint}) {
+                for (const bake::Placement placement :
+                     {bake::Placement::kOptimal, bake::Placement::kEndpoint}) {
                     CAPTURE(name, weighted, int(cost), int(placement));
-                    if (weighted) mesh.weights = some_weights(mesh.positions.size());
-                    else mesh.weights.clear();
+                    if (weighted)
+                        mesh.weights = some_weights(mesh.positions.size());
+                    else
+                        mesh.weights.clear();
                     bake::CollapseOptions options;
                     options.cost = cost;
                     options.placement = placement;

@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: MIT
 //
 // Meshes that break collapsers: hubs, extremes of scale, no extent, slivers, soups.
-#include <catch2/catch.hpp>
-
 #include <algorithm>
+#include <catch2/catch.hpp>
 #include <cmath>
 #include <ctime>
 #include <limits>
@@ -24,7 +23,8 @@ using namespace vsplit::test;
 
 namespace {
 
-/// Collapses by each cost and asks for what holds of any mesh: soundness, the input back, every level sound, the file too.
+/// Collapses by each cost and asks for what holds of any mesh: soundness, the input back, every level sound,
+/// the file too.
 template <class Also>
 void require_sound(const Mesh& mesh, const Also& also) {
     for (const bake::Cost cost : {bake::Cost::kQuadric, bake::Cost::kPaper})
@@ -53,7 +53,9 @@ void require_sound(const Mesh& mesh) {
     require_sound(mesh, [](const bake::CollapseResult&) {});
 }
 
-double cpu_seconds() { return double(std::clock()) / CLOCKS_PER_SEC; }
+double cpu_seconds() {
+    return double(std::clock()) / CLOCKS_PER_SEC;
+}
 
 /// A cone of n triangles, or two of them base to base.
 Mesh make_fan(std::uint32_t n, bool closed) {
@@ -90,11 +92,13 @@ TEST_CASE("Hard: a fan of 20,000 triangles around one vertex") {
                 REQUIRE(result.ok());
                 return std::pair(cpu_seconds() - start, *std::move(result));
             };
-            // Work that grows with the square of the fan would take minutes at 20,000: found out with less. 4 is linear, 16 quadratic.
+            // Work that grows with the square of the fan would take minutes at 20,000: found out with less. 4
+            // is linear, 16 quadratic.
             Mesh mesh;
             const double small = timed(500, mesh).first, larger = timed(2000, mesh).first;
             if (larger > 9 * small + 0.05) {
-                FAIL_CHECK("a fan of 500 takes " << small << " s, one of 2,000 " << larger << " s: quadratic, one of 20,000 is not tried");
+                FAIL_CHECK("a fan of 500 takes " << small << " s, one of 2,000 " << larger
+                                                 << " s: quadratic, one of 20,000 is not tried");
                 continue;
             }
             const auto [seconds, result] = timed(20000, mesh);
@@ -121,7 +125,8 @@ TEST_CASE("Hard: huge and tiny") {
         const Mesh mesh = scaled(make_sphere(16, 10), scale);
         if (mesh_fault(mesh)) FAIL("the test's own mesh is unsound");
         require_sound(mesh, [&](const bake::CollapseResult& result) {
-            // Coordinates of a few denormal steps leave hardly a triangle with area; where there is precision it does collapse.
+            // Coordinates of a few denormal steps leave hardly a triangle with area; where there is precision
+            // it does collapse.
             if (scale > 1e-37) {
                 CHECK(result.mesh.base_vertices <= 64);
                 CHECK(error_at(result.mesh, 0) > 0.01 * scale);
@@ -147,7 +152,8 @@ TEST_CASE("Hard: the result does not depend on the scale, for powers of two") {
 }
 
 TEST_CASE("Hard: all in one plane, on one line, in one point") {
-    require_sound(make_grid(20), [](const bake::CollapseResult& result) { REQUIRE(result.mesh.base_vertices <= 64); });
+    require_sound(make_grid(20),
+                  [](const bake::CollapseResult& result) { REQUIRE(result.mesh.base_vertices <= 64); });
     Mesh tilted = make_grid(20);
     for (Float3& p : tilted.positions) p = {p.x, p.y, 0.3f * p.x - 1.7f * p.y + 100};
     require_sound(tilted);
@@ -168,7 +174,8 @@ TEST_CASE("Hard: long slivers") {
     require_sound(mesh);
     Mesh needle = make_sphere(24, 16);
     for (Float3& p : needle.positions) p = {p.x, p.y, p.z * 1e5f};
-    require_sound(needle, [](const bake::CollapseResult& result) { REQUIRE(result.mesh.base_vertices <= 64); });
+    require_sound(needle,
+                  [](const bake::CollapseResult& result) { REQUIRE(result.mesh.base_vertices <= 64); });
 }
 
 TEST_CASE("Hard: vertices that no triangle uses come back, too") {
@@ -209,9 +216,11 @@ TEST_CASE("Hard: a Moebius strip and a Klein bottle have no two sides") {
         for (int i = 0; i < n; ++i)
             for (int j = 0; j < m; ++j) {
                 const double u = 6.283185307179586 * i / n, v = closed ? 6.283185307179586 * j / m : 0;
-                const double s = closed ? 0.4 * std::sin(v) : 0.08 * (j - (m - 1) / 2.0), c = closed ? 0.4 * std::sin(2 * v) : 0;
+                const double s = closed ? 0.4 * std::sin(v) : 0.08 * (j - (m - 1) / 2.0),
+                             c = closed ? 0.4 * std::sin(2 * v) : 0;
                 const double r = 1 + s * std::cos(u / 2) - c * std::sin(u / 2);
-                mesh.positions.push_back({float(r * std::cos(u)), float(r * std::sin(u)), float(s * std::sin(u / 2) + c * std::cos(u / 2))});
+                mesh.positions.push_back({float(r * std::cos(u)), float(r * std::sin(u)),
+                                          float(s * std::sin(u / 2) + c * std::cos(u / 2))});
             }
         const auto at = [&](int i, int j) {
             if (i == n) j = closed ? (m - j) % m : m - 1 - j;
@@ -220,7 +229,8 @@ TEST_CASE("Hard: a Moebius strip and a Klein bottle have no two sides") {
         for (int i = 0; i < n; ++i)
             for (int j = 0; j + (closed ? 0 : 1) < m; ++j) {
                 mesh.triangles.push_back({at(i, j), at(i + 1, j), at(i + 1, (j + 1) % (closed ? m : m + 1))});
-                mesh.triangles.push_back({at(i, j), at(i + 1, (j + 1) % (closed ? m : m + 1)), at(i, (j + 1) % (closed ? m : m + 1))});
+                mesh.triangles.push_back({at(i, j), at(i + 1, (j + 1) % (closed ? m : m + 1)),
+                                          at(i, (j + 1) % (closed ? m : m + 1))});
             }
         if (mesh_fault(mesh)) FAIL("the test's own mesh is unsound");
         CAPTURE(closed);
@@ -236,13 +246,16 @@ TEST_CASE("Hard: random soups") {
         const std::uint32_t vertices = 4 + random() % 40, triangles = 1 + random() % 200;
         // Every third on a coarse lattice, so that points coincide.
         for (std::uint32_t i = 0; i < vertices; ++i) {
-            const auto c = [&] { return seed % 3 == 0 ? float(random() % 3) : float(random() % 10000) * 1e-4f; };
+            const auto c = [&] {
+                return seed % 3 == 0 ? float(random() % 3) : float(random() % 10000) * 1e-4f;
+            };
             const float x = c(), y = c(), z = c();
             mesh.positions.push_back({x, y, z});
         }
         std::vector<bool> used(vertices, false);
         while (mesh.triangles.size() < triangles) {
-            const Triangle t{std::uint32_t(random() % vertices), std::uint32_t(random() % vertices), std::uint32_t(random() % vertices)};
+            const Triangle t{std::uint32_t(random() % vertices), std::uint32_t(random() % vertices),
+                             std::uint32_t(random() % vertices)};
             if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
             mesh.triangles.push_back(t);
             for (const std::uint32_t v : t) used[v] = true;

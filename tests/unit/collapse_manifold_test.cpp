@@ -2,11 +2,9 @@
 // SPDX-License-Identifier: MIT
 //
 // OpenMesh as a judge from outside: what it can hold as half-edges without complaint is manifold.
-#include <catch2/catch.hpp>
-
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
 #include <OpenMesh/Core/System/omstream.hh>
-
+#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "family.hpp"
@@ -32,7 +30,8 @@ Judgement judge(const Mesh& mesh) {
     std::vector<Kernel::VertexHandle> handles;
     for (const Float3& p : mesh.positions) handles.push_back(kernel.add_vertex(Kernel::Point(p.x, p.y, p.z)));
     Judgement out;
-    for (const Triangle& t : mesh.triangles) out.refused += !kernel.add_face(handles[t[0]], handles[t[1]], handles[t[2]]).is_valid();
+    for (const Triangle& t : mesh.triangles)
+        out.refused += !kernel.add_face(handles[t[0]], handles[t[1]], handles[t[2]]).is_valid();
     for (const auto v : kernel.vertices()) {
         out.complex += !kernel.is_manifold(v);
         out.isolated += kernel.is_isolated(v);

@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: MIT
 //
 // Painted weights: averaged on a collapse, carried through the file, kept where they are large.
-#include <catch2/catch.hpp>
-
 #include <algorithm>
+#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -25,7 +24,8 @@ namespace {
 
 constexpr float kInf = std::numeric_limits<float>::infinity();
 
-bake::CollapseResult collapsed(const Mesh& mesh, bake::Cost cost = bake::Cost::kQuadric, bake::Placement placement = bake::Placement::kOptimal) {
+bake::CollapseResult collapsed(const Mesh& mesh, bake::Cost cost = bake::Cost::kQuadric,
+                               bake::Placement placement = bake::Placement::kOptimal) {
     bake::CollapseOptions options;
     options.cost = cost;
     options.placement = placement;
@@ -53,7 +53,8 @@ TEST_CASE("Weights: on a collapse the vertex that remains takes the average") {
                 live.go_to(level);
                 const std::vector<float> before(live.weights().begin(), live.weights().end());
                 live.go_to(level + 1);
-                for (std::uint32_t child = std::uint32_t(before.size()); child < live.weights().size(); ++child) {
+                for (std::uint32_t child = std::uint32_t(before.size()); child < live.weights().size();
+                     ++child) {
                     const std::uint32_t parent = record.parents[child];
                     if (parent == kNoVertex) continue;
                     wrong += before[parent] != 0.5f * (live.weights()[parent] + live.weights()[child]);
@@ -76,7 +77,8 @@ TEST_CASE("Weights: a tetrahedron's by hand") {
     const Mesh base = cut(record, 0);
     std::vector<float> weights = base.weights;
     std::sort(weights.begin(), weights.end());
-    const bool pole = weights == std::vector<float>{2, 3, 4, 4}, ring = weights == std::vector<float>{2, 2, 4, 4};
+    const bool pole = weights == std::vector<float>{2, 3, 4, 4},
+               ring = weights == std::vector<float>{2, 2, 4, 4};
     CAPTURE(weights);
     REQUIRE((pole || ring));
     const Mesh full = cut(record, 1);
@@ -113,7 +115,8 @@ TEST_CASE("Weights: a painted area keeps clearly more of its vertices") {
             CAPTURE(int(cost), int(placement));
             const auto kept = [&](const Mesh& input, std::size_t percent) {
                 const ProgressiveMesh record = collapsed(input, cost, placement).mesh;
-                const Mesh now = cut(record, level_for_triangles(record, input.triangles.size() * percent / 100));
+                const Mesh now =
+                    cut(record, level_for_triangles(record, input.triangles.size() * percent / 100));
                 return double(std::count_if(now.positions.begin(), now.positions.end(), marked)) / area;
             };
             for (const std::size_t percent : {60, 40}) {
@@ -152,8 +155,10 @@ TEST_CASE("Weights: infinite ones never move nor go") {
             const Mesh base = cut(result.mesh, 0);
             std::multiset<std::array<float, 3>> found;
             for (std::size_t v = 0; v < base.positions.size(); ++v)
-                if (std::isinf(base.weights[v])) found.insert({base.positions[v].x, base.positions[v].y, base.positions[v].z});
-            // Others fold into them, and so take an infinite average: those that were marked are among the found.
+                if (std::isinf(base.weights[v]))
+                    found.insert({base.positions[v].x, base.positions[v].y, base.positions[v].z});
+            // Others fold into them, and so take an infinite average: those that were marked are among the
+            // found.
             REQUIRE(std::includes(found.begin(), found.end(), fixed.begin(), fixed.end()));
             // None of them ever moves.
             for (const VertexMove& move : result.mesh.moves)
@@ -176,7 +181,8 @@ TEST_CASE("Weights: all infinite, nothing collapses; all zero, everything may") 
         REQUIRE(triangle_bits(cut(free.mesh, free.mesh.splits.size())) == triangle_bits(mesh));
     }
     // From tiny to huge, in one mesh.
-    for (std::size_t v = 0; v < mesh.weights.size(); ++v) mesh.weights[v] = std::pow(10.0f, float(int(v % 71)) - 35);
+    for (std::size_t v = 0; v < mesh.weights.size(); ++v)
+        mesh.weights[v] = std::pow(10.0f, float(int(v % 71)) - 35);
     for (const bake::Cost cost : kCosts) {
         const bake::CollapseResult wide = collapsed(mesh, cost);
         REQUIRE(triangle_bits(cut(wide.mesh, wide.mesh.splits.size())) == triangle_bits(mesh));

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The vsplit authors
 // SPDX-License-Identifier: MIT
 //
-// Real models, where they are: the levels at 60 and 40 % have the input's topology and no triangle that flipped.
-#include <catch2/catch.hpp>
-
+// Real models, where they are: the levels at 60 and 40 % have the input's topology and no triangle that
+// flipped.
 #include <algorithm>
+#include <catch2/catch.hpp>
 
 #include "family.hpp"
 #include "mesh_checks.hpp"
@@ -22,15 +22,17 @@ namespace {
 Mesh some_triangles(const Mesh& mesh, std::size_t count) {
     Mesh some{mesh.positions, {}, {}};
     const std::size_t stride = std::max<std::size_t>(1, mesh.triangles.size() / count);
-    for (std::size_t t = 0; t < mesh.triangles.size(); t += stride) some.triangles.push_back(mesh.triangles[t]);
+    for (std::size_t t = 0; t < mesh.triangles.size(); t += stride)
+        some.triangles.push_back(mesh.triangles[t]);
     return some;
 }
 
 }  // namespace
 
 TEST_CASE("Corpus: levels at 60 and 40 %") {
-    for (const char* name : {"meshes/stanford-bunny.obj", "meshes/armadillo.obj", "meshes/nefertiti.obj", "meshes/fandisk.obj", "meshes/rocker-arm.obj",
-                             "meshes/spot.obj", "meshes/homer.obj"}) {
+    for (const char* name :
+         {"meshes/stanford-bunny.obj", "meshes/armadillo.obj", "meshes/nefertiti.obj", "meshes/fandisk.obj",
+          "meshes/rocker-arm.obj", "meshes/spot.obj", "meshes/homer.obj"}) {
         const auto path = corpus_file(name);
         if (!path) continue;
         const auto bytes = bake::read_file(*path);

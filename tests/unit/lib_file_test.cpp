@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The vsplit authors
 // SPDX-License-Identifier: MIT
 //
-// .pmesh files: round trips, and law 1 (every declared prefix is a mesh; cut anywhere else: an error with its offset).
-#include <catch2/catch.hpp>
-
+// .pmesh files: round trips, and law 1 (every declared prefix is a mesh; cut anywhere else: an error with its
+// offset).
 #include <algorithm>
+#include <catch2/catch.hpp>
 #include <limits>
 
 #include "family.hpp"
@@ -52,7 +52,8 @@ TEST_CASE("What is written is read back, every byte") {
             CAPTURE(name, weights);
             if (weights > 0) mesh.weights = test::some_weights(mesh.positions.size());
             if (weights > 1)
-                for (std::size_t v = 0; v < mesh.weights.size(); ++v) mesh.weights[v] = v % 3 == 0 ? inf : v % 3 == 1 ? 0 : mesh.weights[v];
+                for (std::size_t v = 0; v < mesh.weights.size(); ++v)
+                    mesh.weights[v] = v % 3 == 0 ? inf : v % 3 == 1 ? 0 : mesh.weights[v];
             const ProgressiveMesh record = test::naive_record(mesh, 5);
             const Bytes bytes = written(record);
             const auto back = read_progressive_mesh(bytes);
@@ -131,7 +132,8 @@ TEST_CASE("Law 1: every declared prefix is a mesh with the counts and the error 
         Float3 low = info->bounds_min, high = info->bounds_max;
         bool inside = true, touched = live.positions().empty();
         for (const Float3& p : live.positions()) {
-            inside &= p.x >= low.x && p.y >= low.y && p.z >= low.z && p.x <= high.x && p.y <= high.y && p.z <= high.z;
+            inside &= p.x >= low.x && p.y >= low.y && p.z >= low.z && p.x <= high.x && p.y <= high.y &&
+                      p.z <= high.z;
             touched |= p.x == low.x;
         }
         REQUIRE(inside);
@@ -191,7 +193,8 @@ TEST_CASE("The front of a file suffices for its info") {
         }
         if (info.ok()) REQUIRE(info->blocks.size() == whole->blocks.size());
         // No beginning of a .pmesh is taken for another format.
-        if (!info.ok() && size > 0 && size < kHeaderBytes) REQUIRE(info.error().code == ErrorCode::kTruncated);
+        if (!info.ok() && size > 0 && size < kHeaderBytes)
+            REQUIRE(info.error().code == ErrorCode::kTruncated);
     }
 }
 

@@ -2,13 +2,12 @@
 // SPDX-License-Identifier: MIT
 //
 // Files whose checksums are right and whose contents lie: an error, and never more memory than Limits allow.
-#include <catch2/catch.hpp>
-
 #include <malloc.h>
 #include <zstd.h>
 
 #include <algorithm>
 #include <atomic>
+#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
@@ -21,7 +20,8 @@
 #include "vsplit/read.hpp"
 #include "vsplit/write.hpp"
 
-// All memory of this executable is counted. Not inlined, or the compiler takes malloc() and delete for a mismatch.
+// All memory of this executable is counted. Not inlined, or the compiler takes malloc() and delete for a
+// mismatch.
 namespace {
 std::atomic<std::size_t> live_bytes{0}, peak_bytes{0};
 }
@@ -36,10 +36,18 @@ std::atomic<std::size_t> live_bytes{0}, peak_bytes{0};
     if (p) live_bytes -= malloc_usable_size(p);
     std::free(p);
 }
-void operator delete(void* p, std::size_t) noexcept { operator delete(p); }
-[[gnu::noinline]] void* operator new[](std::size_t size) { return operator new(size); }
-[[gnu::noinline]] void operator delete[](void* p) noexcept { operator delete(p); }
-void operator delete[](void* p, std::size_t) noexcept { operator delete(p); }
+void operator delete(void* p, std::size_t) noexcept {
+    operator delete(p);
+}
+[[gnu::noinline]] void* operator new[](std::size_t size) {
+    return operator new(size);
+}
+[[gnu::noinline]] void operator delete[](void* p) noexcept {
+    operator delete(p);
+}
+void operator delete[](void* p, std::size_t) noexcept {
+    operator delete(p);
+}
 
 using namespace vsplit;
 using namespace vsplit::test;
@@ -62,8 +70,10 @@ Hostile read_hostile(const Bytes& bytes, std::uint64_t max_bytes = 64 * kMiB) {
     Hostile result{true, {}, 0};
     {
         const auto read = read_progressive_mesh(bytes, Limits{max_bytes});
-        if (!read.ok()) result = {false, read.error(), 0};
-        else if (progressive_mesh_fault(*read)) FAIL("an unsound mesh was read: " << progressive_mesh_fault(*read));
+        if (!read.ok())
+            result = {false, read.error(), 0};
+        else if (progressive_mesh_fault(*read))
+            FAIL("an unsound mesh was read: " << progressive_mesh_fault(*read));
     }
     result.peak = peak_bytes - before;
     return result;
@@ -111,26 +121,34 @@ TEST_CASE("A lying header is refused before memory is taken") {
     FileInfo info;
     const Bytes good = good_file(info);
     REQUIRE(read_hostile(good).ok);
-    const std::size_t fields[] = {kBlockCountAt, kVerticesAt, kTrianglesAt, kBaseVerticesAt, kBaseTrianglesAt, kSplitsAt, kCornersAt, kMovesAt, kBaseBytesAt};
+    const std::size_t fields[] = {kBlockCountAt, kVerticesAt, kTrianglesAt, kBaseVerticesAt, kBaseTrianglesAt,
+                                  kSplitsAt,     kCornersAt,  kMovesAt,     kBaseBytesAt};
     for (const std::size_t field : fields) {
         const auto now = get<std::uint32_t>(good, field);
-        for (const std::uint32_t value : {0u, now - 1, now + 1, 2 * now, 0x00FFFFFFu, 0x10000000u, 0x3FFFFFFEu, 0x3FFFFFFFu, 0x7FFFFFFFu, 0x80000000u, 0xFFFFFFFEu, 0xFFFFFFFFu}) {
+        for (const std::uint32_t value :
+             {0u, now - 1, now + 1, 2 * now, 0x00FFFFFFu, 0x10000000u, 0x3FFFFFFEu, 0x3FFFFFFFu, 0x7FFFFFFFu,
+              0x80000000u, 0xFFFFFFFEu, 0xFFFFFFFFu}) {
             Bytes bytes = good;
             put_at(bytes, field, value);
             reseal(bytes);
-            require_refused(bytes, "header field at " + std::to_string(field) + " = " + std::to_string(value));
+            require_refused(bytes,
+                            "header field at " + std::to_string(field) + " = " + std::to_string(value));
         }
     }
     for (const std::size_t field : {kFileBytesAt, kBaseOffsetAt})
-        for (const std::uint64_t value : {std::uint64_t{0}, std::uint64_t{1}, get<std::uint64_t>(good, field) + 1, get<std::uint64_t>(good, field) - 1,
-                                          std::uint64_t{1} << 40, ~std::uint64_t{0}, ~std::uint64_t{0} - 100}) {
+        for (const std::uint64_t value :
+             {std::uint64_t{0}, std::uint64_t{1}, get<std::uint64_t>(good, field) + 1,
+              get<std::uint64_t>(good, field) - 1, std::uint64_t{1} << 40, ~std::uint64_t{0},
+              ~std::uint64_t{0} - 100}) {
             Bytes bytes = good;
             put_at(bytes, field, value);
             reseal(bytes);
-            require_refused(bytes, "header field at " + std::to_string(field) + " = " + std::to_string(value));
+            require_refused(bytes,
+                            "header field at " + std::to_string(field) + " = " + std::to_string(value));
         }
     const float inf = std::numeric_limits<float>::infinity();
-    for (const float value : {-1.0f, std::numeric_limits<float>::quiet_NaN(), inf, -inf, info.base_error * 2, info.base_error / 2}) {
+    for (const float value : {-1.0f, std::numeric_limits<float>::quiet_NaN(), inf, -inf, info.base_error * 2,
+                              info.base_error / 2}) {
         Bytes bytes = good;
         put_at(bytes, kBaseErrorAt, value);
         reseal(bytes);
@@ -151,7 +169,8 @@ TEST_CASE("A lying table is refused before memory is taken") {
     for (std::size_t field = 0; field < kTableEntryBytes; field += 4) {
         if (field == kEntryChecksumAt || field == kEntryChecksumAt + 4) continue;  // below
         const auto now = get<std::uint32_t>(good, entry_at(0) + field);
-        for (const std::uint32_t value : {0u, now - 1, now + 1, 2 * now + 1, 0x00FFFFFFu, 0x10000000u, 0x7FFFFFFFu, 0xFFFFFFFFu}) {
+        for (const std::uint32_t value :
+             {0u, now - 1, now + 1, 2 * now + 1, 0x00FFFFFFu, 0x10000000u, 0x7FFFFFFFu, 0xFFFFFFFFu}) {
             if (value == now) continue;
             Bytes bytes = good;
             put_at(bytes, entry_at(0) + field, value);
@@ -162,7 +181,8 @@ TEST_CASE("A lying table is refused before memory is taken") {
             if (field >= kEntrySplitsAt && field < kEntrySplitsAt + 20) {
                 put_at(bytes, header[(field - kEntrySplitsAt) / 4], value);
                 reseal(bytes);
-                require_refused(bytes, "table and header, field at " + std::to_string(field) + " = " + std::to_string(value));
+                require_refused(bytes, "table and header, field at " + std::to_string(field) + " = " +
+                                           std::to_string(value));
             }
         }
     }
@@ -179,7 +199,8 @@ TEST_CASE("A block that unpacks to a flood is refused") {
     const Bytes bomb = packed(zeros);
     REQUIRE(bomb.size() < 64 * 1024);
     // Honest about its size and within the limit: unpacked, and nothing else taken.
-    require_refused(with_block(good, info, bomb, std::uint32_t(zeros.size())), "bomb within the limit", 49 * kMiB);
+    require_refused(with_block(good, info, bomb, std::uint32_t(zeros.size())), "bomb within the limit",
+                    49 * kMiB);
     // Over the limit: nothing is taken.
     const Hostile over = read_hostile(with_block(good, info, bomb, std::uint32_t(zeros.size())), 16 * kMiB);
     REQUIRE_FALSE(over.ok);
@@ -236,19 +257,23 @@ TEST_CASE("Columns that lie are refused or make a sound mesh") {
     REQUIRE(refused * 4 > tried);
     for (std::size_t size = 0; size < raw.size(); size += 7) {
         const Bytes cut(raw.begin(), raw.begin() + std::ptrdiff_t(size));
-        if (!cut.empty()) require_refused(with_block(good, info, packed(cut), std::uint32_t(size)), "columns cut at " + std::to_string(size));
+        if (!cut.empty())
+            require_refused(with_block(good, info, packed(cut), std::uint32_t(size)),
+                            "columns cut at " + std::to_string(size));
     }
 }
 
 TEST_CASE("Garbage for a base mesh is refused without a flood") {
     FileInfo info;
     const Bytes good = good_file(info);
-    const Bytes base(good.begin() + std::ptrdiff_t(info.base_offset), good.begin() + std::ptrdiff_t(info.base_offset + info.base_bytes));
+    const Bytes base(good.begin() + std::ptrdiff_t(info.base_offset),
+                     good.begin() + std::ptrdiff_t(info.base_offset + info.base_bytes));
     REQUIRE(read_hostile(with_base(good, info, base)).ok);
     const auto try_base = [&](const Bytes& forged, bool must_fail, const std::string& what) {
         const Bytes bytes = with_base(good, info, forged);
         const Hostile h = read_hostile(bytes);
-        const bool good_answer = (!must_fail || !h.ok) && (h.ok || h.error.offset <= bytes.size()) && h.peak <= 64 * kMiB;
+        const bool good_answer =
+            (!must_fail || !h.ok) && (h.ok || h.error.offset <= bytes.size()) && h.peak <= 64 * kMiB;
         if (!good_answer) {
             CAPTURE(what, h.ok, h.error.describe(), h.peak);
             CHECK(good_answer);
@@ -264,7 +289,9 @@ TEST_CASE("Garbage for a base mesh is refused without a flood") {
         std::copy_n(base.begin(), std::min<std::size_t>(size, 11), garbage.begin());
         try_base(garbage, true, "garbage behind a head, " + std::to_string(size));
     }
-    for (std::size_t size = 0; size < base.size(); ++size) try_base(Bytes(base.begin(), base.begin() + std::ptrdiff_t(size)), true, "cut at " + std::to_string(size));
+    for (std::size_t size = 0; size < base.size(); ++size)
+        try_base(Bytes(base.begin(), base.begin() + std::ptrdiff_t(size)), true,
+                 "cut at " + std::to_string(size));
     for (std::size_t at = 0; at < base.size(); ++at)
         for (const int value : {0x00, 0x01, 0x7F, 0x80, 0xFF, int(random() & 0xFF)}) {
             Bytes forged = base;
@@ -285,7 +312,8 @@ TEST_CASE("Random bytes behind the magic are refused") {
     for (int i = 0; i < 2000; ++i) {
         Bytes bytes(kHeaderBytes + random() % 400);
         for (std::byte& b : bytes) b = std::byte(random());
-        std::copy(reinterpret_cast<const std::byte*>(kMagic.data()), reinterpret_cast<const std::byte*>(kMagic.data()) + kMagic.size(), bytes.begin());
+        std::copy(reinterpret_cast<const std::byte*>(kMagic.data()),
+                  reinterpret_cast<const std::byte*>(kMagic.data()) + kMagic.size(), bytes.begin());
         put_at(bytes, 8, kVersion);
         put_at(bytes, 12, std::uint32_t(random() & 1));
         put_at(bytes, kBlockCountAt, std::uint32_t(random() % 4));

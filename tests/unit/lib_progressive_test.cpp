@@ -3,7 +3,6 @@
 //
 // The hand-over struct and the live mesh: rules, levels, law 2 (a split undoes its collapse).
 #include <catch2/catch.hpp>
-
 #include <cstring>
 #include <limits>
 #include <string>
@@ -18,8 +17,8 @@ using namespace vsplit;
 
 namespace {
 
-/// A triangle (0,1,2); the first split makes 3 of 2 and the quad 0 1 3 2 of it; the second brings a whole component back:
-/// the triangle 4 5 6.
+/// A triangle (0,1,2); the first split makes 3 of 2 and the quad 0 1 3 2 of it; the second brings a whole
+/// component back: the triangle 4 5 6.
 ProgressiveMesh hand_made() {
     ProgressiveMesh m;
     m.base_vertices = 3;
@@ -34,12 +33,14 @@ ProgressiveMesh hand_made() {
     return m;
 }
 
-/// Two renderer vertices at one place, torn apart by a seam: one split gives birth to two vertices with a parent each.
+/// Two renderer vertices at one place, torn apart by a seam: one split gives birth to two vertices with a
+/// parent each.
 ProgressiveMesh seam() {
     ProgressiveMesh m;
     m.base_vertices = 6;
     m.base_triangles = 2;
-    m.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0.5f, 0, 0}, {0.5f, 0, 0}};
+    m.positions = {{0, 0, 0}, {1, 0, 0},  {0, 1, 0},    {0, 0, 0},
+                   {1, 0, 0}, {0, -1, 0}, {0.5f, 0, 0}, {0.5f, 0, 0}};
     m.parents = {kNoVertex, kNoVertex, kNoVertex, kNoVertex, kNoVertex, kNoVertex, 1, 4};
     m.triangles = {{0, 1, 2}, {3, 5, 4}, {6, 1, 2}, {7, 5, 4}};
     m.corner_changes = {{1, 6}, {5, 7}};
@@ -78,40 +79,69 @@ TEST_CASE("progressive_mesh_fault names every rule that is broken") {
         {"the base mesh is larger than the full mesh", [](ProgressiveMesh& m) { m.base_triangles = 4; }},
         {"there are not as many weights as vertices", [](ProgressiveMesh& m) { m.weights.pop_back(); }},
         {"there are not as many parents as vertices", [](ProgressiveMesh& m) { m.parents.push_back(0); }},
-        {"a position is not finite", [](ProgressiveMesh& m) { m.positions[6].y = std::numeric_limits<float>::quiet_NaN(); }},
-        {"a position is not finite", [](ProgressiveMesh& m) { m.positions[0].z = std::numeric_limits<float>::infinity(); }},
+        {"a position is not finite",
+         [](ProgressiveMesh& m) { m.positions[6].y = std::numeric_limits<float>::quiet_NaN(); }},
+        {"a position is not finite",
+         [](ProgressiveMesh& m) { m.positions[0].z = std::numeric_limits<float>::infinity(); }},
         {"a weight is negative or not a number", [](ProgressiveMesh& m) { m.weights[0] = -1; }},
-        {"a weight is negative or not a number", [](ProgressiveMesh& m) { m.weights[6] = std::numeric_limits<float>::quiet_NaN(); }},
+        {"a weight is negative or not a number",
+         [](ProgressiveMesh& m) { m.weights[6] = std::numeric_limits<float>::quiet_NaN(); }},
         {"a vertex of the base mesh has a parent", [](ProgressiveMesh& m) { m.parents[1] = 0; }},
         {"the last split does not end where the arrays end", [](ProgressiveMesh& m) { m.splits.pop_back(); }},
         {"the last split does not end where the arrays end", [](ProgressiveMesh& m) { m.splits.clear(); }},
-        {"the last split does not end where the arrays end", [](ProgressiveMesh& m) { m.splits.back().vertices_end = 8; }},
-        {"the last split does not end where the arrays end", [](ProgressiveMesh& m) { m.moves.push_back({0, {}, 1}); }},
-        {"the last split does not end where the arrays end", [](ProgressiveMesh& m) { m.corner_changes.push_back({0, 3}); }},
-        {"a triangle of the base mesh names a vertex that does not exist", [](ProgressiveMesh& m) { m.triangles[0][1] = 3; }},
-        {"a triangle of the base mesh names a vertex twice", [](ProgressiveMesh& m) { m.triangles[0] = {0, 1, 1}; }},
+        {"the last split does not end where the arrays end",
+         [](ProgressiveMesh& m) { m.splits.back().vertices_end = 8; }},
+        {"the last split does not end where the arrays end",
+         [](ProgressiveMesh& m) {
+             m.moves.push_back({0, {}, 1});
+         }},
+        {"the last split does not end where the arrays end",
+         [](ProgressiveMesh& m) {
+             m.corner_changes.push_back({0, 3});
+         }},
+        {"a triangle of the base mesh names a vertex that does not exist",
+         [](ProgressiveMesh& m) { m.triangles[0][1] = 3; }},
+        {"a triangle of the base mesh names a vertex twice",
+         [](ProgressiveMesh& m) {
+             m.triangles[0] = {0, 1, 1};
+         }},
         {"a split ends before it begins", [](ProgressiveMesh& m) { m.splits[0].vertices_end = 2; }},
         {"a split ends before it begins", [](ProgressiveMesh& m) { m.splits[0].triangles_end = 0; }},
-        {"a split ends before it begins", [](ProgressiveMesh& m) { m.splits = {{4, 2, 1, 1, 0.5f}, {4, 2, 0, 1, 0.25f}, {7, 3, 1, 1, 0.25f}}; }},
+        {"a split ends before it begins",
+         [](ProgressiveMesh& m) {
+             m.splits = {{4, 2, 1, 1, 0.5f}, {4, 2, 0, 1, 0.25f}, {7, 3, 1, 1, 0.25f}};
+         }},
         {"a split ends behind the arrays", [](ProgressiveMesh& m) { m.splits[0].corners_end = 2; }},
         {"a split ends behind the arrays", [](ProgressiveMesh& m) { m.splits[0].triangles_end = 9; }},
         {"a split ends behind the arrays", [](ProgressiveMesh& m) { m.splits[0].moves_end = 0xFFFFFFFFu; }},
         {"an error is negative, not finite, or grows", [](ProgressiveMesh& m) { m.splits[1].error = -1; }},
         {"an error is negative, not finite, or grows", [](ProgressiveMesh& m) { m.splits[1].error = 0.75f; }},
-        {"an error is negative, not finite, or grows", [](ProgressiveMesh& m) { m.splits[0].error = std::numeric_limits<float>::infinity(); }},
-        {"an error is negative, not finite, or grows", [](ProgressiveMesh& m) { m.splits[0].error = std::numeric_limits<float>::quiet_NaN(); }},
+        {"an error is negative, not finite, or grows",
+         [](ProgressiveMesh& m) { m.splits[0].error = std::numeric_limits<float>::infinity(); }},
+        {"an error is negative, not finite, or grows",
+         [](ProgressiveMesh& m) { m.splits[0].error = std::numeric_limits<float>::quiet_NaN(); }},
         {"a vertex is not younger than its parent", [](ProgressiveMesh& m) { m.parents[3] = 3; }},
         {"a vertex is not younger than its parent", [](ProgressiveMesh& m) { m.parents[5] = 4; }},
         {"a vertex is not younger than its parent", [](ProgressiveMesh& m) { m.parents[3] = 0xFFFFFFFEu; }},
-        {"a corner change names a triangle that does not exist", [](ProgressiveMesh& m) { m.corner_changes[0].corner = 3; }},
-        {"a corner change names a triangle that does not exist", [](ProgressiveMesh& m) { m.corner_changes[0].corner = 0xFFFFFFFFu; }},
-        {"a corner change names a vertex that its split did not make", [](ProgressiveMesh& m) { m.corner_changes[0].vertex = 2; }},
-        {"a corner change names a vertex that its split did not make", [](ProgressiveMesh& m) { m.corner_changes[0].vertex = 4; }},
-        {"a corner does not hold the parent of its new vertex", [](ProgressiveMesh& m) { m.corner_changes[0].corner = 1; }},
-        {"a new triangle names a vertex that does not exist", [](ProgressiveMesh& m) { m.triangles[1][0] = 4; }},
-        {"a new triangle names a vertex twice", [](ProgressiveMesh& m) { m.triangles[1] = {0, 3, 3}; }},
+        {"a corner change names a triangle that does not exist",
+         [](ProgressiveMesh& m) { m.corner_changes[0].corner = 3; }},
+        {"a corner change names a triangle that does not exist",
+         [](ProgressiveMesh& m) { m.corner_changes[0].corner = 0xFFFFFFFFu; }},
+        {"a corner change names a vertex that its split did not make",
+         [](ProgressiveMesh& m) { m.corner_changes[0].vertex = 2; }},
+        {"a corner change names a vertex that its split did not make",
+         [](ProgressiveMesh& m) { m.corner_changes[0].vertex = 4; }},
+        {"a corner does not hold the parent of its new vertex",
+         [](ProgressiveMesh& m) { m.corner_changes[0].corner = 1; }},
+        {"a new triangle names a vertex that does not exist",
+         [](ProgressiveMesh& m) { m.triangles[1][0] = 4; }},
+        {"a new triangle names a vertex twice",
+         [](ProgressiveMesh& m) {
+             m.triangles[1] = {0, 3, 3};
+         }},
         {"a move names a vertex that does not exist", [](ProgressiveMesh& m) { m.moves[0].vertex = 3; }},
-        {"a position is not finite", [](ProgressiveMesh& m) { m.moves[0].position.x = std::numeric_limits<float>::quiet_NaN(); }},
+        {"a position is not finite",
+         [](ProgressiveMesh& m) { m.moves[0].position.x = std::numeric_limits<float>::quiet_NaN(); }},
         {"a weight is negative or not a number", [](ProgressiveMesh& m) { m.moves[0].weight = -2; }},
     };
     for (const Violation& violation : violations) {

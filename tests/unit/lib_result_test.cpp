@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The vsplit authors
 // SPDX-License-Identifier: MIT
 #include <catch2/catch.hpp>
-
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -47,8 +46,10 @@ TEST_CASE("An error says where") {
 
 TEST_CASE("Error codes have stable names, each its own") {
     std::set<std::string> names;
-    for (int code = 0; code <= int(ErrorCode::kCancelled); ++code) names.insert(error_code_name(static_cast<ErrorCode>(code)));
-    REQUIRE(names == std::set<std::string>{"io", "unsupported", "truncated", "malformed", "checksum", "limit", "argument", "exists", "cancelled"});
+    for (int code = 0; code <= int(ErrorCode::kCancelled); ++code)
+        names.insert(error_code_name(static_cast<ErrorCode>(code)));
+    REQUIRE(names == std::set<std::string>{"io", "unsupported", "truncated", "malformed", "checksum", "limit",
+                                           "argument", "exists", "cancelled"});
 }
 
 TEST_CASE("The version is three numbers") {
@@ -58,7 +59,9 @@ TEST_CASE("The version is three numbers") {
 }
 
 TEST_CASE("Checksums are XXH64 with seed 0") {
-    const auto sum = [](const std::string& text) { return checksum64(std::as_bytes(std::span(text.data(), text.size()))); };
+    const auto sum = [](const std::string& text) {
+        return checksum64(std::as_bytes(std::span(text.data(), text.size())));
+    };
     // Published by the reference implementation (xxhsum -H1) and its bindings' tests.
     REQUIRE(sum("") == 0xEF46DB3751D8E999u);
     REQUIRE(sum("a") == 0xD24EC4F1A98C6E5Bu);
@@ -86,7 +89,8 @@ TEST_CASE("Column numbers come back") {
         REQUIRE(std::memcmp(&back, &ascending[i], sizeof(float)) == 0);
         if (i > 0) REQUIRE(ordered_bits(ascending[i - 1]) < ordered_bits(ascending[i]));
     }
-    for (const std::uint32_t value : {0u, 1u, 127u, 128u, 16383u, 16384u, 0x7FFFFFFFu, 0x80000000u, 0xFFFFFFFFu}) {
+    for (const std::uint32_t value :
+         {0u, 1u, 127u, 128u, 16383u, 16384u, 0x7FFFFFFFu, 0x80000000u, 0xFFFFFFFFu}) {
         REQUIRE(unzigzag(zigzag(value)) == value);
         std::vector<std::byte> bytes;
         put_varint(bytes, value);
@@ -113,7 +117,8 @@ TEST_CASE("mesh_fault names what is wrong") {
         CAPTURE(name);
         REQUIRE(mesh_fault(mesh) == nullptr);
     }
-    const Mesh good{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}, {1, 0, std::numeric_limits<float>::infinity()}};
+    const Mesh good{
+        {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}, {1, 0, std::numeric_limits<float>::infinity()}};
     REQUIRE(mesh_fault(good) == nullptr);
     const auto fault = [&](auto change) {
         Mesh bad = good;
@@ -125,8 +130,10 @@ TEST_CASE("mesh_fault names what is wrong") {
     REQUIRE(fault([&](Mesh& m) { m.positions[1].x = nan; }) == "a position is not finite");
     REQUIRE(fault([&](Mesh& m) { m.positions[1].y = inf; }) == "a position is not finite");
     REQUIRE(fault([&](Mesh& m) { m.positions[2].z = -inf; }) == "a position is not finite");
-    REQUIRE(fault([&](Mesh& m) { m.triangles[0][2] = 3; }) == "a triangle names a vertex that does not exist");
-    REQUIRE(fault([&](Mesh& m) { m.triangles[0][0] = 0xFFFFFFFFu; }) == "a triangle names a vertex that does not exist");
+    REQUIRE(fault([&](Mesh& m) { m.triangles[0][2] = 3; }) ==
+            "a triangle names a vertex that does not exist");
+    REQUIRE(fault([&](Mesh& m) { m.triangles[0][0] = 0xFFFFFFFFu; }) ==
+            "a triangle names a vertex that does not exist");
     for (const Triangle& t : {Triangle{0, 0, 1}, Triangle{0, 1, 1}, Triangle{1, 0, 1}})
         REQUIRE(fault([&](Mesh& m) { m.triangles[0] = t; }) == "a triangle names a vertex twice");
     REQUIRE(fault([&](Mesh& m) { m.weights.pop_back(); }) == "there are not as many weights as vertices");

@@ -16,10 +16,18 @@ namespace {
 
 using Vec = std::array<double, 3>;
 
-Vec vec(const Float3& p) { return {double(p.x), double(p.y), double(p.z)}; }
-Vec minus(const Vec& a, const Vec& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-Vec along(const Vec& a, const Vec& b, double t) { return {a[0] + t * b[0], a[1] + t * b[1], a[2] + t * b[2]}; }
-double dot(const Vec& a, const Vec& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+Vec vec(const Float3& p) {
+    return {double(p.x), double(p.y), double(p.z)};
+}
+Vec minus(const Vec& a, const Vec& b) {
+    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+Vec along(const Vec& a, const Vec& b, double t) {
+    return {a[0] + t * b[0], a[1] + t * b[1], a[2] + t * b[2]};
+}
+double dot(const Vec& a, const Vec& b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
 Vec cross(const Vec& a, const Vec& b) {
     return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
@@ -29,7 +37,9 @@ struct Corners {
     Vec normal() const { return cross(minus(b, a), minus(c, a)); }
     Vec at(double u, double v) const { return along(along(a, minus(b, a), u), minus(c, a), v); }
 };
-Corners corners(const Mesh& m, const Triangle& t) { return {vec(m.positions[t[0]]), vec(m.positions[t[1]]), vec(m.positions[t[2]])}; }
+Corners corners(const Mesh& m, const Triangle& t) {
+    return {vec(m.positions[t[0]]), vec(m.positions[t[1]]), vec(m.positions[t[2]])};
+}
 
 /// Ericson, Real-Time Collision Detection, 2005, section 5.1.5.
 double distance2(const Vec& p, const Corners& t) {
@@ -121,7 +131,8 @@ Topology topology(const Mesh& mesh) {
             ++out.non_manifold_edges;
         }
         for (const EdgeUse& other : uses)
-            for (const std::uint32_t v : {e.low, e.high}) fans.join(corner(e.triangle, v), corner(other.triangle, v));
+            for (const std::uint32_t v : {e.low, e.high})
+                fans.join(corner(e.triangle, v), corner(other.triangle, v));
     });
     out.edges = edges.size();
     out.triangles = mesh.triangles.size();
@@ -158,7 +169,8 @@ std::vector<std::array<std::uint32_t, 12>> triangle_bits(const Mesh& mesh) {
         std::array<std::array<std::uint32_t, 4>, 3> c;
         for (std::size_t k = 0; k < 3; ++k) {
             const Float3& p = mesh.positions[t[k]];
-            c[k] = {std::bit_cast<std::uint32_t>(p.x), std::bit_cast<std::uint32_t>(p.y), std::bit_cast<std::uint32_t>(p.z),
+            c[k] = {std::bit_cast<std::uint32_t>(p.x), std::bit_cast<std::uint32_t>(p.y),
+                    std::bit_cast<std::uint32_t>(p.z),
                     mesh.weights.empty() ? 0 : std::bit_cast<std::uint32_t>(mesh.weights[t[k]])};
         }
         std::rotate(c.begin(), std::min_element(c.begin(), c.end()), c.end());
@@ -174,7 +186,9 @@ std::size_t degenerate_triangles(const Mesh& mesh) {
     for (const Triangle& t : mesh.triangles) {
         const Corners c = corners(mesh, t);
         const Vec n = c.normal();
-        const double longest = std::max({dot(minus(c.b, c.a), minus(c.b, c.a)), dot(minus(c.c, c.b), minus(c.c, c.b)), dot(minus(c.a, c.c), minus(c.a, c.c))});
+        const double longest =
+            std::max({dot(minus(c.b, c.a), minus(c.b, c.a)), dot(minus(c.c, c.b), minus(c.c, c.b)),
+                      dot(minus(c.a, c.c), minus(c.a, c.c))});
         count += !(std::sqrt(dot(n, n)) > 1e-7 * longest);
     }
     return count;
@@ -213,7 +227,8 @@ std::size_t folded_edges(const Mesh& mesh) {
     std::size_t count = 0;
     for_edges(edge_uses(mesh), [&](std::span<const EdgeUse> uses) {
         if (uses.size() != 2) return;
-        const Vec a = corners(mesh, mesh.triangles[uses[0].triangle]).normal(), b = corners(mesh, mesh.triangles[uses[1].triangle]).normal();
+        const Vec a = corners(mesh, mesh.triangles[uses[0].triangle]).normal(),
+                  b = corners(mesh, mesh.triangles[uses[1].triangle]).normal();
         count += dot(a, b) < -0.95 * std::sqrt(dot(a, a) * dot(b, b));
     });
     return count;

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The vsplit authors
 // SPDX-License-Identifier: MIT
 //
-// What tests ask of a mesh's shape and topology. Written apart from the baker's own survey and guards, so that one checks the other.
+// What tests ask of a mesh's shape and topology. Written apart from the baker's own survey and guards, so
+// that one checks the other.
 #pragma once
 
 #include <array>
@@ -33,16 +34,18 @@ struct Topology {
 
 Topology topology(const Mesh& mesh);
 
-/// Every part of `coarse` is like one of `fine`, no two like the same: holes and handles came through, parts may have vanished.
+/// Every part of `coarse` is like one of `fine`, no two like the same: holes and handles came through, parts
+/// may have vanished.
 bool parts_survive(const Topology& coarse, const Topology& fine);
 
-/// Triangles as the bits of their corners (and weights), least corner first, orientation kept, sorted: equal for the same surface
-/// however it is numbered.
+/// Triangles as the bits of their corners (and weights), least corner first, orientation kept, sorted: equal
+/// for the same surface however it is numbered.
 std::vector<std::array<std::uint32_t, 12>> triangle_bits(const Mesh& mesh);
 
 /// Triangles without area (below 1e-7 of the longest edge squared: what float coordinates can still tell).
 std::size_t degenerate_triangles(const Mesh& mesh);
-/// Triangles that oppose the nearest triangle of `input` at the centroid and at three points around it. Quadratic time.
+/// Triangles that oppose the nearest triangle of `input` at the centroid and at three points around it.
+/// Quadratic time.
 std::size_t flipped_triangles(const Mesh& mesh, const Mesh& input);
 /// Edges whose two triangles lie face to face, folded by more than 162 degrees.
 std::size_t folded_edges(const Mesh& mesh);

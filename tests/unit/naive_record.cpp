@@ -81,17 +81,20 @@ ProgressiveMesh naive_record(const Mesh& mesh, std::uint32_t seed, std::size_t c
         bear(step.child, vertex_birth[step.parent]);
         out.moves.push_back({vertex_birth[step.parent], step.parent_position, step.parent_weight});
         for (const std::uint32_t corner : step.corners)
-            out.corner_changes.push_back({3 * triangle_birth[corner / 3] + corner % 3, vertex_birth[step.child]});
+            out.corner_changes.push_back(
+                {3 * triangle_birth[corner / 3] + corner % 3, vertex_birth[step.child]});
         for (const std::uint32_t t : step.removed) bear_triangle(t);
         out.splits.push_back({std::uint32_t(out.positions.size()), std::uint32_t(out.triangles.size()),
-                              std::uint32_t(out.corner_changes.size()), std::uint32_t(out.moves.size()), 0.01f * float(i + 1)});
+                              std::uint32_t(out.corner_changes.size()), std::uint32_t(out.moves.size()),
+                              0.01f * float(i + 1)});
     }
     return out;
 }
 
 bool same_bytes(const ProgressiveMesh& a, const ProgressiveMesh& b) {
-    return a.base_vertices == b.base_vertices && a.base_triangles == b.base_triangles && same(a.positions, b.positions) &&
-           same(a.weights, b.weights) && same(a.parents, b.parents) && same(a.triangles, b.triangles) && same(a.splits, b.splits) &&
+    return a.base_vertices == b.base_vertices && a.base_triangles == b.base_triangles &&
+           same(a.positions, b.positions) && same(a.weights, b.weights) && same(a.parents, b.parents) &&
+           same(a.triangles, b.triangles) && same(a.splits, b.splits) &&
            same(a.corner_changes, b.corner_changes) && same(a.moves, b.moves);
 }
 

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The vsplit authors
 // SPDX-License-Identifier: MIT
 //
-// A progressive mesh without a collapser: edges folded as a random number says, whatever becomes of the surface. So the library's
-// tests need no baker, and meet stars that a careful collapser would never make.
+// A progressive mesh without a collapser: edges folded as a random number says, whatever becomes of the
+// surface. So the library's tests need no baker, and meet stars that a careful collapser would never make.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,8 @@
 
 namespace vsplit::test {
 
-/// Folds up to `collapses` edges of `mesh`; sound for any sound mesh. Weights of the mesh average, errors fall evenly to 0.
+/// Folds up to `collapses` edges of `mesh`; sound for any sound mesh. Weights of the mesh average, errors
+/// fall evenly to 0.
 ProgressiveMesh naive_record(const Mesh& mesh, std::uint32_t seed, std::size_t collapses = ~std::size_t{0});
 
 /// Every array equal, byte for byte.

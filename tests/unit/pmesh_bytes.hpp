@@ -24,12 +24,16 @@ void put_at(Bytes& bytes, std::size_t offset, T value) {
 }
 
 /// Where things are in the header and in an entry of the table (formats/spec/pmesh-0.md).
-inline constexpr std::size_t kFileBytesAt = 16, kBlockCountAt = 24, kVerticesAt = 28, kTrianglesAt = 32, kBaseVerticesAt = 36,
-                             kBaseTrianglesAt = 40, kSplitsAt = 44, kCornersAt = 48, kMovesAt = 52, kBoundsAt = 56, kBaseOffsetAt = 80,
-                             kBaseBytesAt = 88, kBaseErrorAt = 92, kBaseChecksumAt = 96;
-inline constexpr std::size_t kEntryBytesAt = 8, kEntryRawBytesAt = 12, kEntryChecksumAt = 16, kEntrySplitsAt = 24;
+inline constexpr std::size_t kFileBytesAt = 16, kBlockCountAt = 24, kVerticesAt = 28, kTrianglesAt = 32,
+                             kBaseVerticesAt = 36, kBaseTrianglesAt = 40, kSplitsAt = 44, kCornersAt = 48,
+                             kMovesAt = 52, kBoundsAt = 56, kBaseOffsetAt = 80, kBaseBytesAt = 88,
+                             kBaseErrorAt = 92, kBaseChecksumAt = 96;
+inline constexpr std::size_t kEntryBytesAt = 8, kEntryRawBytesAt = 12, kEntryChecksumAt = 16,
+                             kEntrySplitsAt = 24;
 
-inline std::size_t entry_at(std::size_t block) { return kHeaderBytes + kTableEntryBytes * block; }
+inline std::size_t entry_at(std::size_t block) {
+    return kHeaderBytes + kTableEntryBytes * block;
+}
 
 /// Checksums of table and header as the bytes are now; blocks' and base's own stay.
 inline void reseal(Bytes& bytes) {
@@ -47,13 +51,15 @@ inline Bytes with_base(const Bytes& file, const FileInfo& info, std::span<const 
     put_at(out, kFileBytesAt, std::uint64_t{out.size()});
     put_at(out, kBaseBytesAt, std::uint32_t(base.size()));
     put_at(out, kBaseChecksumAt, checksum64(base));
-    for (std::size_t i = 0; i < info.blocks.size(); ++i) put_at(out, entry_at(i), info.blocks[i].offset + base.size() - info.base_bytes);
+    for (std::size_t i = 0; i < info.blocks.size(); ++i)
+        put_at(out, entry_at(i), info.blocks[i].offset + base.size() - info.base_bytes);
     reseal(out);
     return out;
 }
 
 /// `file`, which has one block, with other stored bytes for it that announce `raw_bytes`.
-inline Bytes with_block(const Bytes& file, const FileInfo& info, std::span<const std::byte> stored, std::uint32_t raw_bytes) {
+inline Bytes with_block(const Bytes& file, const FileInfo& info, std::span<const std::byte> stored,
+                        std::uint32_t raw_bytes) {
     Bytes out(file.begin(), file.begin() + std::ptrdiff_t(info.blocks[0].offset));
     out.insert(out.end(), stored.begin(), stored.end());
     put_at(out, kFileBytesAt, std::uint64_t{out.size()});
