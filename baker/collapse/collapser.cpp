@@ -102,15 +102,11 @@ Candidate Collapser::evaluate(std::uint32_t u, std::uint32_t v, Fold fold) const
         return paper_->evaluate(mesh_, star, fold, options_.placement, double(shapes_[u].weight), double(shapes_[v].weight));
     }
     const EdgeQuadric edge(mesh_.position(u), mesh_.position(v), shapes_[u], shapes_[v], options_);
-    Candidate candidate;
-    switch (fold) {
-        case Fold::kIntoFirst: candidate = {edge.half * -1.0, edge.cost(edge.half * -1.0)}; break;
-        case Fold::kIntoSecond: candidate = {edge.half, edge.cost(edge.half)}; break;
-        default: candidate = options_.placement == Placement::kOptimal ? edge.best() : edge.endpoint(false);
-    }
-    candidate.place = candidate.place + edge.middle;
-    // Among folds that cost nothing the short edges go first.
-    candidate.cost = std::max(candidate.cost, 0.0) + 1e-14 * edge.edge2 * (edge.edge2 + trace(edge.sum));
+    Candidate candidate = fold == Fold::kIntoFirst                         ? edge.first()
+                          : fold == Fold::kIntoSecond                      ? edge.second()
+                          : options_.placement == Placement::kOptimal ? edge.best()
+                                                                      : edge.endpoint(false);
+    candidate.cost = std::max(candidate.cost, 0.0) + edge.tie_break();
     return candidate;
 }
 
@@ -186,7 +182,9 @@ bool Collapser::attempt(std::uint32_t u, const Option& option, Bucket bucket, fl
     float place_deviation = 0;
     const double d = deviation(star_, place, witness, place_deviation);
     const double weight = 0.5 * (double(shapes_[u].weight) + double(shapes_[option.other].weight));
-    const double limit = paper_ ? 0 : options_.deviation_limit * d * d * d * d * weight;
+    // The same dimension as the cost, so that one factor serves every level: area^0.5 times distance^4.
+    const double size = double(shapes_[u].size) + double(shapes_[option.other].size);
+    const double limit = paper_ ? 0 : options_.deviation_limit * d * d * d * d * std::sqrt(size) * weight;
     cost = float(std::max(option.candidate.cost, limit));
     if (BucketQueue::bucket_of(cost) > bucket) return false;
     apply(star_, option, rounded, witness, place_deviation, float(d));
@@ -202,8 +200,7 @@ void Collapser::apply(const EdgeStar& star, const Option& option, Float3 place, 
 
     const Double3 at = mesh_.work(place);
     for (const EdgeStar::Wing& wing : star.wings) {
-        const Double3 apex = wing.at_first ? star.pu : star.pv;
-        const Double3 before = cross(wing.pa - apex, wing.pb - apex), after = cross(wing.pa - at, wing.pb - at);
+        const TrianglePart before(wing.normal), after(cross(wing.pa - at, wing.pb - at));
         for (const std::uint32_t w : {wing.a, wing.b}) {
             add_triangle(shapes_[w], before, -1);
             add_triangle(shapes_[w], after, 1);
@@ -212,7 +209,7 @@ void Collapser::apply(const EdgeStar& star, const Option& option, Float3 place, 
     for (std::size_t i = 0; i < star.opposite.size(); ++i) {
         Double3 n = cross(star.pv - star.pu, star.opposite_places[i] - star.pu);
         if (!star.forward[i]) n = n * -1.0;
-        add_triangle(shapes_[star.opposite[i]], n, -1);
+        add_triangle(shapes_[star.opposite[i]], TrianglePart(n), -1);
     }
 
     error_ = std::max(error_, error);
@@ -314,7 +311,7 @@ bool Collapser::run(const Progress& progress) {
     for (std::uint32_t c = 0; c < components_.count(); ++c)
         if (components_.may_vanish(c)) {
             const double reach = components_.reach(c);
-            const double limit = paper_ ? reach : std::max(options_.deviation_limit, 1.0) * reach * reach * reach * reach;
+            const double limit = paper_ ? reach : std::max(options_.deviation_limit, 1.0) * reach * reach * reach * reach * reach;
             queue_.push(component_item(c), BucketQueue::bucket_of(float(limit)));
         }
 

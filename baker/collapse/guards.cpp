@@ -40,7 +40,7 @@ void EdgeStar::gather(const StarMesh& mesh, std::uint32_t first, std::uint32_t s
     opposite.clear();
     opposite_places.clear();
     forward.clear();
-    const auto add = [&](std::uint32_t apex, std::uint32_t other, bool at_first) {
+    const auto add = [&](std::uint32_t apex, Double3 place, std::uint32_t other, bool at_first) {
         for (const std::uint32_t t : mesh.star(apex)) {
             const Triangle& c = mesh.triangle(t);
             const int k = c[0] == apex ? 0 : c[1] == apex ? 1 : 2;
@@ -52,12 +52,13 @@ void EdgeStar::gather(const StarMesh& mesh, std::uint32_t first, std::uint32_t s
                     forward.push_back(a == other);
                 }
             } else {
-                wings.push_back({a, b, mesh.position(a), mesh.position(b), at_first});
+                const Double3 pa = mesh.position(a), pb = mesh.position(b);
+                wings.push_back({a, b, pa, pb, cross(pa - place, pb - place), at_first});
             }
         }
     };
-    add(u, v, true);
-    add(v, u, false);
+    add(u, pu, v, true);
+    add(v, pv, u, false);
 }
 
 bool Guards::keeps_topology(const EdgeStar& star) {
@@ -88,30 +89,29 @@ bool Guards::keeps_topology(const EdgeStar& star) {
 
 bool Guards::keeps_shape(const EdgeStar& star, Double3 place, const std::vector<VertexShape>& shapes, const Strictness& strictness) const {
     if (star.wings.size() > strictness.max_valence) return false;
-    const auto normal_at = [&](std::uint32_t v) {
-        const Double3 n{shapes[v].normal[0], shapes[v].normal[1], shapes[v].normal[2]};
-        const double len = length(n);
-        return len > 0 ? n * (1 / len) : Double3{};
+    const VertexShape &su = shapes[star.u], &sv = shapes[star.v];
+    const Double3 own{double(su.normal[0]) + double(sv.normal[0]), double(su.normal[1]) + double(sv.normal[1]),
+                      double(su.normal[2]) + double(sv.normal[2])};
+    const auto opposes = [&](std::uint32_t v, Double3 n) {
+        return double(shapes[v].normal[0]) * n.x + double(shapes[v].normal[1]) * n.y + double(shapes[v].normal[2]) * n.z < 0;
     };
-    const Double3 merged{double(shapes[star.u].normal[0]) + double(shapes[star.v].normal[0]),
-                         double(shapes[star.u].normal[1]) + double(shapes[star.v].normal[1]),
-                         double(shapes[star.u].normal[2]) + double(shapes[star.v].normal[2])};
-    const double merged_length = length(merged);
-    const Double3 own = merged_length > 0 ? merged * (1 / merged_length) : Double3{};
+    const double cosine = strictness.min_normal_cosine, quality = strictness.min_quality;
     for (const EdgeStar::Wing& wing : star.wings) {
-        const Double3 apex = wing.at_first ? star.pu : star.pv;
-        const Double3 side = wing.pb - wing.pa;
-        const Double3 before = cross(wing.pa - apex, side), after = cross(wing.pa - place, side);
-        const double before_length = length(before), after_length = length(after);
+        const Double3 side = wing.pb - wing.pa, spoke = wing.pa - place;
+        const Double3 after = cross(spoke, side);
+        const double before2 = length2(wing.normal), after2 = length2(after);
         // An area below 1e-14 of the squared extent counts as none, but what was there before may stay.
-        if (!(after_length > std::min(1e-13, before_length))) return false;
-        if (before_length > 0 && dot(before, after) < strictness.min_normal_cosine * before_length * after_length) return false;
-        const double quality = triangle_quality(place, wing.pa, wing.pb, after);
-        if (quality < strictness.min_quality && quality < triangle_quality(apex, wing.pa, wing.pb, before)) return false;
-        if (strictness.keep_orientation) {
-            const Double3 around = own + normal_at(wing.a) + normal_at(wing.b);
-            if (dot(around, after) < 0) return false;
+        if (!(after2 > std::min(1e-26, before2))) return false;
+        const double turn = dot(wing.normal, after), limit2 = cosine * cosine * before2 * after2;
+        if (cosine > 0 ? turn < 0 || turn * turn < limit2 : turn < 0 && turn * turn > limit2) return false;
+        // 4 sqrt(3) area / (sum of squared edges), compared without roots.
+        const double edges = length2(spoke) + length2(side) + length2(wing.pb - place);
+        if (12 * after2 < quality * quality * edges * edges) {
+            const Double3 apex = wing.at_first ? star.pu : star.pv;
+            const double edges_before = length2(wing.pa - apex) + length2(side) + length2(wing.pb - apex);
+            if (after2 * edges_before * edges_before < before2 * edges * edges) return false;
         }
+        if (strictness.keep_orientation && (dot(own, after) < 0) + opposes(wing.a, after) + opposes(wing.b, after) >= 2) return false;
     }
     return true;
 }

@@ -26,9 +26,10 @@ Fold fold_rule(const StarMesh& mesh, std::uint32_t u, std::uint32_t v);
 /// The triangles that an edge's collapse changes, gathered once for all tests.
 struct EdgeStar {
     struct Wing {
-        std::uint32_t a, b;      ///< The triangle is (apex, a, b), counter-clockwise.
+        std::uint32_t a, b;  ///< The triangle is (apex, a, b), counter-clockwise.
         Double3 pa, pb;
-        bool at_first;           ///< The apex is the edge's first vertex.
+        Double3 normal;  ///< Twice the area vector.
+        bool at_first;   ///< The apex is the edge's first vertex.
     };
     std::uint32_t u = 0, v = 0;
     Double3 pu, pv;
@@ -45,7 +46,7 @@ struct Strictness {
     double min_normal_cosine;
     double min_quality;
     std::size_t max_valence;
-    bool keep_orientation;  ///< No triangle may oppose the input's normals around its corners.
+    bool keep_orientation;  ///< No triangle may oppose the input's normals around two of its corners.
 };
 
 class Guards {
@@ -62,11 +63,5 @@ class Guards {
     std::vector<std::uint32_t> stamps_;
     std::uint32_t stamp_ = 0;
 };
-
-/// 4 sqrt(3) area / (sum of squared edges): 1 for an equilateral triangle, 0 for a sliver. `n2` is twice the area vector.
-inline double triangle_quality(Double3 a, Double3 b, Double3 c, Double3 n2) {
-    const double edges = length2(b - a) + length2(c - b) + length2(a - c);
-    return edges > 0 ? 2 * std::sqrt(3.0) * length(n2) / edges : 0;
-}
 
 }  // namespace vsplit::bake

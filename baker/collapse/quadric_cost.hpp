@@ -20,12 +20,12 @@ using Symmetric = std::array<double, 6>;
 
 /// What a vertex knows of its star, one cache line.
 struct alignas(64) VertexShape {
-    float quadric[6] = {};  ///< Sum over triangles of area n nT, plus boundary terms.
+    float quadric[6] = {};  ///< Sum over triangles of area^1.5 n nT, plus boundary terms.
     float area[3] = {};     ///< Sum over triangles of the area vector.
+    float size = 0;         ///< Sum over triangles of the area.
     float normal[3] = {};   ///< Area vectors of all input triangles that ended up here.
     float weight = 1;       ///< Painted.
     float deviation = 0;    ///< Estimated distance of the vertex to the input surface.
-    float pad[2] = {};
 };
 
 inline Double3 times(const Symmetric& m, Double3 v) {
@@ -63,99 +63,122 @@ inline Symmetric widen(const float (&q)[6], double weight) {
     return {q[0] * weight, q[1] * weight, q[2] * weight, q[3] * weight, q[4] * weight, q[5] * weight};
 }
 
-/// The quadrics of an edge's two ends together: cost and best place of folding it.
-struct EdgeQuadric {
+/// The quadrics of an edge's two ends together: cost and best place of folding it. Costs are a length to the fifth power: area^1.5 times squared
+/// distance. (Area alone, as Garland and Heckbert weigh, or squared, as Lindstrom and Turk do, both measured worse:
+/// docs/decisions/0003-collapse-engine.md.)
+class EdgeQuadric {
+  public:
     EdgeQuadric(Double3 u, Double3 v, const VertexShape& su, const VertexShape& sv, const CollapseOptions& options)
-        : qu(widen(su.quadric, su.weight)), qv(widen(sv.quadric, sv.weight)), middle((u + v) * 0.5), half((v - u) * 0.5),
-          edge2(4 * length2(half)), options_(options) {
-        for (std::size_t i = 0; i < 6; ++i) sum[i] = qu[i] + qv[i];
+        : middle_((u + v) * 0.5), half_((v - u) * 0.5), regularisation_(options.regularisation) {
+        const double wu = su.weight, wv = sv.weight;
+        Symmetric difference;
+        for (std::size_t i = 0; i < 6; ++i) {
+            const double a = wu * double(su.quadric[i]), b = wv * double(sv.quadric[i]);
+            sum_[i] = a + b;
+            difference[i] = b - a;
+        }
+        // Keeping the volume: (gu + gv) (x - middle) = (gv - gu) half, softly (Lindstrom and Turk 1998, section 4.1).
         const Double3 gu{su.area[0], su.area[1], su.area[2]}, gv{sv.area[0], sv.area[1], sv.area[2]};
-        volume = gu + gv;
-        volume_rhs = dot(gv - gu, half);  // volume . (x - middle) = volume_rhs keeps the volume
-        const double t = trace(sum);
-        const double w = 0.5 * (double(su.weight) + double(sv.weight));
-        volume_scale = t > 0 ? options.volume_weight * w * w / t : 0;
+        volume_ = gu + gv;
+        const double size = double(su.size) + double(sv.size);
+        volume_scale_ = size > 0 ? options.volume_weight * 0.5 * (wu + wv) / std::sqrt(size) : 0;
+        volume_rhs_ = dot(gv - gu, half_);
+        // cost(x) = xT sum x - 2 rhs x + constant, about the middle
+        rhs_ = times(difference, half_) + volume_ * (volume_scale_ * volume_rhs_);
+        constant_ = form(sum_, half_) + volume_scale_ * volume_rhs_ * volume_rhs_;
     }
 
-    /// x relative to the middle of the edge, which runs from -half to half.
+    /// Of folding to x, relative to the middle of the edge, which runs from -half to half.
     double cost(Double3 x) const {
-        const double miss = dot(volume, x) - volume_rhs;
-        return form(qu, x + half) + form(qv, x - half) + volume_scale * miss * miss;
+        const double moved = dot(volume_, x);
+        return form(sum_, x) + volume_scale_ * moved * moved - 2 * dot(rhs_, x) + constant_;
     }
 
     Candidate best() const {
-        Candidate best;
-        Symmetric m = sum;
-        m[0] += volume_scale * volume.x * volume.x;
-        m[1] += volume_scale * volume.x * volume.y;
-        m[2] += volume_scale * volume.x * volume.z;
-        m[3] += volume_scale * volume.y * volume.y;
-        m[4] += volume_scale * volume.y * volume.z;
-        m[5] += volume_scale * volume.z * volume.z;
-        const double pull = options_.regularisation * trace(sum) + 1e-30;
+        Symmetric m = sum_;
+        const Double3 scaled = volume_ * volume_scale_;
+        m[0] += scaled.x * volume_.x;
+        m[1] += scaled.x * volume_.y;
+        m[2] += scaled.x * volume_.z;
+        m[3] += scaled.y * volume_.y;
+        m[4] += scaled.y * volume_.z;
+        m[5] += scaled.z * volume_.z;
+        const double pull = regularisation_ * trace(sum_) + 1e-30;
         m[0] += pull;
         m[3] += pull;
         m[5] += pull;
-        // qu (x + half) + qv (x - half) + ... = 0
-        const Double3 rhs = times(qv, half) - times(qu, half) + volume * (volume_scale * volume_rhs);
         Double3 x;
-        if (!solve(m, rhs, x) || !(length2(x) <= 4 * edge2)) return endpoint(true);
-        best.place = x;
-        best.cost = cost(x);
+        if (!solve(m, rhs_, x) || !(length2(x) <= 16 * length2(half_))) return endpoint(true);
+        // At the minimum xT m x = rhs x; the pull is no part of the cost.
+        return {middle_ + x, constant_ - dot(rhs_, x) - pull * length2(x)};
+    }
+
+    Candidate first() const { return {middle_ - half_, cost(half_ * -1.0)}; }
+    Candidate second() const { return {middle_ + half_, cost(half_)}; }
+    Candidate endpoint(bool or_middle) const {
+        Candidate best = first();
+        if (const Candidate other = second(); other.cost < best.cost) best = other;
+        if (or_middle && constant_ <= best.cost) best = {middle_, constant_};
         return best;
     }
 
-    Candidate endpoint(bool with_middle) const {
-        Candidate best{half * -1.0, cost(half * -1.0)};
-        const Candidate other{half, cost(half)};
-        if (other.cost < best.cost) best = other;
-        if (with_middle) {
-            const Candidate centre{{}, cost({})};
-            if (centre.cost <= best.cost) best = centre;
-        }
-        return best;
+    /// Prefers short edges where everything else is free.
+    double tie_break() const {
+        const double edge2 = 4 * length2(half_);
+        return 1e-14 * edge2 * (std::sqrt(edge2) * edge2 + trace(sum_));
     }
-
-    Symmetric qu, qv, sum;
-    Double3 middle, half, volume;
-    double edge2, volume_rhs = 0, volume_scale = 0;
 
   private:
-    const CollapseOptions& options_;
+    Symmetric sum_;
+    Double3 middle_, half_, volume_, rhs_;
+    double volume_rhs_ = 0, volume_scale_ = 0, constant_ = 0, regularisation_;
 };
 
-/// Adds (sign 1) or takes away (-1) a triangle's part of a vertex's quadric; `n2` is twice the area vector.
-inline void add_triangle(VertexShape& shape, Double3 n2, double sign) {
-    const double len = length(n2);
-    if (!(len > 0)) return;
-    const double s = sign * 0.5 / len;
-    shape.quadric[0] += float(s * n2.x * n2.x);
-    shape.quadric[1] += float(s * n2.x * n2.y);
-    shape.quadric[2] += float(s * n2.x * n2.z);
-    shape.quadric[3] += float(s * n2.y * n2.y);
-    shape.quadric[4] += float(s * n2.y * n2.z);
-    shape.quadric[5] += float(s * n2.z * n2.z);
-    shape.area[0] += float(sign * 0.5 * n2.x);
-    shape.area[1] += float(sign * 0.5 * n2.y);
-    shape.area[2] += float(sign * 0.5 * n2.z);
+/// A triangle's part of the shapes of its corners.
+struct TrianglePart {
+    explicit TrianglePart(Double3 twice_area_vector) : n2(twice_area_vector) {
+        const double len = length(n2);
+        size = 0.5 * len;
+        scale = len > 0 ? 0.25 * std::sqrt(size) / size : 0;  // area^1.5 n nT = scale n2 n2T
+    }
+    Double3 n2;
+    double size = 0, scale = 0;
+};
+
+/// Adds (sign 1) or takes away (-1) a triangle's part.
+inline void add_triangle(VertexShape& shape, const TrianglePart& part, double sign) {
+    const double s = sign * part.scale;
+    const Double3 n = part.n2;
+    shape.quadric[0] += float(s * n.x * n.x);
+    shape.quadric[1] += float(s * n.x * n.y);
+    shape.quadric[2] += float(s * n.x * n.z);
+    shape.quadric[3] += float(s * n.y * n.y);
+    shape.quadric[4] += float(s * n.y * n.z);
+    shape.quadric[5] += float(s * n.z * n.z);
+    shape.area[0] += float(sign * 0.5 * n.x);
+    shape.area[1] += float(sign * 0.5 * n.y);
+    shape.area[2] += float(sign * 0.5 * n.z);
+    shape.size += float(sign * part.size);
 }
 
-/// Adds a boundary edge's part: squared length times squared distance to its line (Lindstrom and Turk 1998, section 4.2).
-inline void add_boundary(VertexShape& shape, Double3 edge, double weight) {
-    const double e2 = length2(edge) * weight;
-    shape.quadric[0] += float(e2 - weight * edge.x * edge.x);
-    shape.quadric[1] += float(-weight * edge.x * edge.y);
-    shape.quadric[2] += float(-weight * edge.x * edge.z);
-    shape.quadric[3] += float(e2 - weight * edge.y * edge.y);
-    shape.quadric[4] += float(-weight * edge.y * edge.z);
-    shape.quadric[5] += float(e2 - weight * edge.z * edge.z);
+/// Adds a boundary edge's part: its length to the third power times the squared distance to its line (after Lindstrom and Turk 1998,
+/// section 4.2, in the dimension of the triangles' parts).
+inline void add_boundary(VertexShape& shape, Double3 edge, double boundary_weight) {
+    const double e2 = length2(edge), weight = boundary_weight * std::sqrt(e2);
+    shape.quadric[0] += float(weight * (e2 - edge.x * edge.x));
+    shape.quadric[1] -= float(weight * edge.x * edge.y);
+    shape.quadric[2] -= float(weight * edge.x * edge.z);
+    shape.quadric[3] += float(weight * (e2 - edge.y * edge.y));
+    shape.quadric[4] -= float(weight * edge.y * edge.z);
+    shape.quadric[5] += float(weight * (e2 - edge.z * edge.z));
 }
 
 /// Quadric and area vector from scratch; normal, weight and deviation stay.
 inline void rebuild_shape(const StarMesh& mesh, std::uint32_t v, double boundary_weight, std::vector<Neighbour>& scratch, VertexShape& shape) {
     for (float& q : shape.quadric) q = 0;
     for (float& a : shape.area) a = 0;
-    for (const std::uint32_t t : mesh.star(v)) add_triangle(shape, mesh.normal(mesh.triangle(t)), 1);
+    shape.size = 0;
+    for (const std::uint32_t t : mesh.star(v)) add_triangle(shape, TrianglePart(mesh.normal(mesh.triangle(t))), 1);
     if (mesh.kind(v) == VertexKind::kInner) return;
     neighbours_of(mesh, v, scratch);
     const Double3 p = mesh.position(v);

@@ -39,9 +39,10 @@ struct CollapseOptions {
     /// Weight of the change of volume (soft form of Lindstrom and Turk 1998, section 4.1).
     double volume_weight = 3;
     /// Pull toward the edge's middle, relative to the quadric's trace: what decides where the quadric does not.
-    double regularisation = 1e-6;
-    /// A collapse waits until its cost reaches this times the fourth power of the deviation it makes; 0 turns it off.
-    double deviation_limit = 20;
+    double regularisation = 1e-8;
+    /// A collapse waits until its cost reaches this times the fourth power of the deviation it makes (times the root of the area of its
+    /// triangles); 0 turns it off. Larger trades the mean error for the maximum.
+    double deviation_limit = 5;
     /// Guard: a triangle's normal may turn by at most the angle of this cosine in one collapse.
     double min_normal_cosine = 0.4;
     /// Guard: least quality 4 sqrt(3) area / (sum of squared edges) of a changed triangle, unless it was worse before.
