@@ -44,8 +44,7 @@ Collapser::Collapser(const Mesh& mesh, const CollapseOptions& options)
       queue_(mesh_.vertex_count() + std::size_t{components_.count()}),
       record_(!mesh.weights.empty()),
       strictness_{options.min_normal_cosine, options.min_quality, 60, true},
-      shapes_(mesh_.vertex_count()),
-      witnesses_(mesh_.vertex_count()),
+      histories_(mesh_.vertex_count()),
       targets_(mesh_.vertex_count(), kNoVertex) {
     if (!mesh.weights.empty()) {
         weights_.reserve(mesh_.vertex_count());
@@ -58,10 +57,10 @@ Collapser::Collapser(const Mesh& mesh, const CollapseOptions& options)
         std::vector<Neighbour> scratch;
         for (std::uint32_t v = range.begin(); v < range.end(); ++v) {
             if (mesh_.kind(v) == VertexKind::kDead) continue;
-            rebuild_shape(mesh_, v, options_.boundary_weight, scratch, shapes_[v]);
-            std::copy_n(shapes_[v].area, 3, shapes_[v].normal);
-            if (!weights_.empty() && std::isfinite(weights_[v])) shapes_[v].weight = weights_[v];
-            witnesses_[v] = to_float(mesh_.position(v));
+            rebuild_shape(mesh_, v, options_.boundary_weight, scratch);
+            std::copy_n(mesh_.shape(v).area, 3, histories_[v].normal);
+            if (!weights_.empty() && std::isfinite(weights_[v])) mesh_.shape(v).weight = weights_[v];
+            histories_[v].witness = to_float(mesh_.position(v));
         }
     });
     if (options.cost == Cost::kPaper) paper_ = std::make_unique<PaperCost>(mesh_);
@@ -99,9 +98,9 @@ Candidate Collapser::evaluate(std::uint32_t u, std::uint32_t v, Fold fold) const
     if (paper_) {
         thread_local EdgeStar star;
         star.gather(mesh_, u, v);
-        return paper_->evaluate(mesh_, star, fold, options_.placement, double(shapes_[u].weight), double(shapes_[v].weight));
+        return paper_->evaluate(mesh_, star, fold, options_.placement, double(mesh_.shape(u).weight), double(mesh_.shape(v).weight));
     }
-    const EdgeQuadric edge(mesh_.position(u), mesh_.position(v), shapes_[u], shapes_[v], options_);
+    const EdgeQuadric edge(mesh_.position(u), mesh_.position(v), mesh_.shape(u), mesh_.shape(v), options_);
     Candidate candidate = fold == Fold::kIntoFirst                         ? edge.first()
                           : fold == Fold::kIntoSecond                      ? edge.second()
                           : options_.placement == Placement::kOptimal ? edge.best()
@@ -149,10 +148,10 @@ double Collapser::deviation(const EdgeStar& star, Double3 place, Float3& witness
     double farthest = std::max(to_new(star.pu), to_new(star.pv));
     double witness_distance = -1;
     for (const std::uint32_t end : {star.u, star.v}) {
-        const double d = to_new(to_double(witnesses_[end]));
+        const double d = to_new(to_double(histories_[end].witness));
         if (d > witness_distance) {
             witness_distance = d;
-            witness = witnesses_[end];
+            witness = histories_[end].witness;
         }
     }
     farthest = std::max(farthest, witness_distance);
@@ -163,7 +162,7 @@ double Collapser::deviation(const EdgeStar& star, Double3 place, Float3& witness
     for (const Double3 opposite : star.opposite_places) to_old = std::min(to_old, distance2_to_triangle(place, star.pu, star.pv, opposite));
     const double du = length(place - star.pu), dv = length(place - star.pv);
     const double t = du + dv > 0 ? du / (du + dv) : 0;
-    const double carried = (1 - t) * double(shapes_[star.u].deviation) + t * double(shapes_[star.v].deviation);
+    const double carried = (1 - t) * double(histories_[star.u].deviation) + t * double(histories_[star.v].deviation);
     place_deviation = float(std::sqrt(to_old) + carried);
     return std::max(std::sqrt(farthest), double(place_deviation));
 }
@@ -177,13 +176,13 @@ bool Collapser::attempt(std::uint32_t u, const Option& option, Bucket bucket, fl
                            : option.fold == Fold::kIntoSecond ? mesh_.raw_position(option.other)
                                                               : mesh_.round(option.candidate.place);
     const Double3 place = mesh_.work(rounded);
-    if (!guards_.keeps_shape(star_, place, shapes_, strictness_)) return false;
+    if (!guards_.keeps_shape(star_, place, histories_, strictness_)) return false;
     Float3 witness;
     float place_deviation = 0;
     const double d = deviation(star_, place, witness, place_deviation);
-    const double weight = 0.5 * (double(shapes_[u].weight) + double(shapes_[option.other].weight));
+    const double weight = 0.5 * (double(mesh_.shape(u).weight) + double(mesh_.shape(option.other).weight));
     // The same dimension as the cost, so that one factor serves every level: area^0.5 times distance^4.
-    const double size = double(shapes_[u].size) + double(shapes_[option.other].size);
+    const double size = double(mesh_.shape(u).size) + double(mesh_.shape(option.other).size);
     const double limit = paper_ ? 0 : options_.deviation_limit * d * d * d * d * std::sqrt(size) * weight;
     cost = float(std::max(option.candidate.cost, limit));
     if (BucketQueue::bucket_of(cost) > bucket) return false;
@@ -202,14 +201,14 @@ void Collapser::apply(const EdgeStar& star, const Option& option, Float3 place, 
     for (const EdgeStar::Wing& wing : star.wings) {
         const TrianglePart before(wing.normal), after(cross(wing.pa - at, wing.pb - at));
         for (const std::uint32_t w : {wing.a, wing.b}) {
-            add_triangle(shapes_[w], before, -1);
-            add_triangle(shapes_[w], after, 1);
+            add_triangle(mesh_.shape(w), before, -1);
+            add_triangle(mesh_.shape(w), after, 1);
         }
     }
     for (std::size_t i = 0; i < star.opposite.size(); ++i) {
         Double3 n = cross(star.pv - star.pu, star.opposite_places[i] - star.pu);
         if (!star.forward[i]) n = n * -1.0;
-        add_triangle(shapes_[star.opposite[i]], TrianglePart(n), -1);
+        add_triangle(mesh_.shape(star.opposite[i]), TrianglePart(n), -1);
     }
 
     error_ = std::max(error_, error);
@@ -221,21 +220,22 @@ void Collapser::apply(const EdgeStar& star, const Option& option, Float3 place, 
     components_.lose(components_.of(parent), before - mesh_.live_triangles());
     mesh_.set_raw_position(parent, place);
 
-    VertexShape& shape = shapes_[parent];
-    for (std::size_t i = 0; i < 3; ++i) shape.normal[i] += shapes_[child].normal[i];
-    shape.weight = 0.5f * (shape.weight + shapes_[child].weight);
-    shape.deviation = place_deviation;
+    VertexHistory& history = histories_[parent];
+    for (std::size_t i = 0; i < 3; ++i) history.normal[i] += histories_[child].normal[i];
+    history.deviation = place_deviation;
+    history.witness = witness;
+    VertexShape& shape = mesh_.shape(parent);
+    shape.weight = 0.5f * (shape.weight + mesh_.shape(child).weight);
     if (!weights_.empty()) weights_[parent] = 0.5f * (weights_[parent] + weights_[child]);
-    witnesses_[parent] = witness;
     if (paper_) paper_->merge(parent, child);
-    rebuild_shape(mesh_, parent, options_.boundary_weight, ring_, shape);
+    rebuild_shape(mesh_, parent, options_.boundary_weight, ring_);
 
     // The ring: its triangles changed, so its costs did; they are looked at again when their turn comes.
     touched_.clear();
     visit_neighbours(mesh_, parent, ring_, [&](std::uint32_t w) { touched_.push_back(w); });
     const Bucket now = BucketQueue::bucket_of(float(option.candidate.cost));
     for (const std::uint32_t w : touched_) {
-        if (mesh_.kind(w) != VertexKind::kInner) rebuild_shape(mesh_, w, options_.boundary_weight, ring_, shapes_[w]);
+        if (mesh_.kind(w) != VertexKind::kInner) rebuild_shape(mesh_, w, options_.boundary_weight, ring_);
         targets_[w] = kNoVertex;
         if (!queue_.contains(w)) queue_.push(w, now);
     }
@@ -243,6 +243,15 @@ void Collapser::apply(const EdgeStar& star, const Option& option, Float3 place, 
     const float cost = cheapest(parent);
     if (cost < kNeverCost) queue_.push(parent, BucketQueue::bucket_of(cost));
     else queue_.remove(parent);
+}
+
+void Collapser::prefetch() const {
+    // A pipeline over the items to come: each step needs what the one before has fetched.
+    const std::uint32_t vertices = mesh_.vertex_count();
+    if (const std::uint32_t v = queue_.peek(12); v < vertices) mesh_.prefetch_vertex(v);
+    if (const std::uint32_t v = queue_.peek(9); v < vertices) mesh_.prefetch_star(v);
+    if (const std::uint32_t v = queue_.peek(6); v < vertices) mesh_.prefetch_triangles(v);
+    if (const std::uint32_t v = queue_.peek(3); v < vertices) mesh_.prefetch_neighbours(v);
 }
 
 void Collapser::process(std::uint32_t u, Bucket bucket) {
@@ -331,6 +340,7 @@ bool Collapser::run(const Progress& progress) {
         std::uint32_t item = 0;
         Bucket bucket = 0;
         for (std::uint64_t count = 0; queue_.pop(item, bucket); ++count) {
+            prefetch();
             if (item < mesh_.vertex_count()) process(item, bucket);
             else process_component(item - mesh_.vertex_count(), bucket);
             if (progress && (count & 0x3FFF) == 0 && !progress("collapse", 1 - double(mesh_.live_triangles()) / total)) return false;
@@ -347,8 +357,7 @@ ProgressiveMesh Collapser::finish(CollapseReport& report) {
     report.stopped_by = mesh_.triangle_count() == 0 ? "there is nothing to collapse"
                                                     : "every remaining edge is fixed, or its collapse would change the topology";
     // Only the mesh itself is needed from here on.
-    std::vector<VertexShape>().swap(shapes_);
-    std::vector<Float3>().swap(witnesses_);
+    std::vector<VertexHistory>().swap(histories_);
     std::vector<std::uint32_t>().swap(targets_);
     paper_.reset();
     ProgressiveMesh mesh = record_.finish(mesh_, weights_, nullptr);

@@ -42,6 +42,7 @@ class Collapser {
     Candidate evaluate(std::uint32_t u, std::uint32_t v, Fold fold) const;
     void list_options(std::uint32_t u);
     float cheapest(std::uint32_t u);
+    void prefetch() const;
     void process(std::uint32_t u, Bucket bucket);
     void process_component(std::uint32_t component, Bucket bucket);
     /// True if it was done; false sets `cost` to what it has to wait for (infinity: never as things are).
@@ -58,8 +59,7 @@ class Collapser {
     Record record_;
     std::unique_ptr<PaperCost> paper_;
     Strictness strictness_;
-    std::vector<VertexShape> shapes_;
-    std::vector<Float3> witnesses_;       // working coordinates of the input vertex that is farthest from its surroundings
+    std::vector<VertexHistory> histories_;
     std::vector<float> weights_;          // empty: none painted
     std::vector<std::uint32_t> targets_;  // cheapest edge, or kNoVertex: list all again
     float error_ = 0;                     // the largest so far, working units

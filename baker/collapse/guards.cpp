@@ -87,13 +87,13 @@ bool Guards::keeps_topology(const EdgeStar& star) {
     return !(first_has && second_has);
 }
 
-bool Guards::keeps_shape(const EdgeStar& star, Double3 place, const std::vector<VertexShape>& shapes, const Strictness& strictness) const {
+bool Guards::keeps_shape(const EdgeStar& star, Double3 place, const std::vector<VertexHistory>& histories, const Strictness& strictness) const {
     if (star.wings.size() > strictness.max_valence) return false;
-    const VertexShape &su = shapes[star.u], &sv = shapes[star.v];
+    const VertexHistory &su = histories[star.u], &sv = histories[star.v];
     const Double3 own{double(su.normal[0]) + double(sv.normal[0]), double(su.normal[1]) + double(sv.normal[1]),
                       double(su.normal[2]) + double(sv.normal[2])};
     const auto opposes = [&](std::uint32_t v, Double3 n) {
-        return double(shapes[v].normal[0]) * n.x + double(shapes[v].normal[1]) * n.y + double(shapes[v].normal[2]) * n.z < 0;
+        return double(histories[v].normal[0]) * n.x + double(histories[v].normal[1]) * n.y + double(histories[v].normal[2]) * n.z < 0;
     };
     const double cosine = strictness.min_normal_cosine, quality = strictness.min_quality;
     for (const EdgeStar::Wing& wing : star.wings) {

@@ -18,16 +18,6 @@ namespace vsplit::bake {
 /// Symmetric 3x3 matrix: xx xy xz yy yz zz.
 using Symmetric = std::array<double, 6>;
 
-/// What a vertex knows of its star, one cache line.
-struct alignas(64) VertexShape {
-    float quadric[6] = {};  ///< Sum over triangles of area^1.5 n nT, plus boundary terms.
-    float area[3] = {};     ///< Sum over triangles of the area vector.
-    float size = 0;         ///< Sum over triangles of the area.
-    float normal[3] = {};   ///< Area vectors of all input triangles that ended up here.
-    float weight = 1;       ///< Painted.
-    float deviation = 0;    ///< Estimated distance of the vertex to the input surface.
-};
-
 inline Double3 times(const Symmetric& m, Double3 v) {
     return {m[0] * v.x + m[1] * v.y + m[2] * v.z, m[1] * v.x + m[3] * v.y + m[4] * v.z, m[2] * v.x + m[4] * v.y + m[5] * v.z};
 }
@@ -173,8 +163,9 @@ inline void add_boundary(VertexShape& shape, Double3 edge, double boundary_weigh
     shape.quadric[5] += float(weight * (e2 - edge.z * edge.z));
 }
 
-/// Quadric and area vector from scratch; normal, weight and deviation stay.
-inline void rebuild_shape(const StarMesh& mesh, std::uint32_t v, double boundary_weight, std::vector<Neighbour>& scratch, VertexShape& shape) {
+/// The shape from scratch; the weight stays.
+inline void rebuild_shape(StarMesh& mesh, std::uint32_t v, double boundary_weight, std::vector<Neighbour>& scratch) {
+    VertexShape& shape = mesh.shape(v);
     for (float& q : shape.quadric) q = 0;
     for (float& a : shape.area) a = 0;
     shape.size = 0;

@@ -60,38 +60,36 @@ StarMesh::StarMesh(const Mesh& mesh) {
     });
     tbb::parallel_sort(order.begin(), order.end());
     input_vertices_.resize(vertices);
-    positions_.resize(vertices);
+    vertices_.resize(vertices);
     std::vector<std::uint32_t> renumbered(vertices);
     parallel(vertices, [&](std::size_t i) {
         input_vertices_[i] = order[i].second;
-        positions_[i] = mesh.positions[order[i].second];
+        vertices_[i].position = mesh.positions[order[i].second];
         renumbered[order[i].second] = std::uint32_t(i);
     });
     std::vector<std::pair<std::uint64_t, std::uint32_t>>().swap(order);
 
     // Triangles by their first vertex on the curve: a counting sort, stable.
-    star_begin_.assign(vertices + 1, 0);
+    std::vector<std::uint32_t> place(vertices + 1, 0);
     const auto first_of = [&](const Triangle& t) { return std::min({renumbered[t[0]], renumbered[t[1]], renumbered[t[2]]}); };
-    for (const Triangle& t : mesh.triangles) ++star_begin_[first_of(t) + 1];
-    std::partial_sum(star_begin_.begin(), star_begin_.end(), star_begin_.begin());
+    for (const Triangle& t : mesh.triangles) ++place[first_of(t) + 1];
+    std::partial_sum(place.begin(), place.end(), place.begin());
     triangles_.resize(mesh.triangles.size());
-    for (const Triangle& t : mesh.triangles) triangles_[star_begin_[first_of(t)]++] = {renumbered[t[0]], renumbered[t[1]], renumbered[t[2]]};
+    for (const Triangle& t : mesh.triangles) triangles_[place[first_of(t)]++] = {renumbered[t[0]], renumbered[t[1]], renumbered[t[2]]};
 
-    star_size_.assign(vertices, 0);
     for (const Triangle& t : triangles_)
-        for (const std::uint32_t v : t) ++star_size_[v];
+        for (const std::uint32_t v : t) ++vertices_[v].star_size;
     std::uint32_t begin = 0;
-    for (std::size_t v = 0; v < vertices; ++v) {
-        star_begin_[v] = begin;
-        begin += star_size_[v];
-        star_size_[v] = 0;
+    for (Vertex& v : vertices_) {
+        v.star_begin = begin;
+        begin += v.star_size;
+        v.star_size = 0;
     }
-    star_begin_.resize(vertices);
     // Stars that outgrow their place move to the end; a fold adds what it takes away elsewhere, so this is ample.
     arena_.reserve(std::size_t{begin} + begin / 2);
     arena_.resize(begin);
     for (std::uint32_t t = 0; t < triangles_.size(); ++t)
-        for (const std::uint32_t v : triangles_[t]) arena_[star_begin_[v] + star_size_[v]++] = t;
+        for (const std::uint32_t v : triangles_[t]) arena_[vertices_[v].star_begin + vertices_[v].star_size++] = t;
 
     live_triangles_ = triangle_count();
     live_vertices_ = 0;
@@ -104,7 +102,7 @@ void StarMesh::classify() {
         std::vector<Neighbour> ring;
         std::vector<std::uint32_t> roots;
         for (std::uint32_t v = range.begin(); v < range.end(); ++v) {
-            if (star_size_[v] == 0) {
+            if (vertices_[v].star_size == 0) {
                 kinds_[v] = VertexKind::kDead;
                 continue;
             }
@@ -124,7 +122,7 @@ void StarMesh::classify() {
             // The link must hang together: otherwise several fans meet in this one point.
             roots.resize(ring.size());
             std::iota(roots.begin(), roots.end(), 0u);
-            const bool sorted = star_size_[v] > kLargeStar;
+            const bool sorted = vertices_[v].star_size > kLargeStar;
             const auto index_of = [&](std::uint32_t w) {
                 if (sorted)
                     return std::uint32_t(std::lower_bound(ring.begin(), ring.end(), w, [](const Neighbour& n, std::uint32_t x) { return n.vertex < x; }) - ring.begin());
@@ -159,35 +157,35 @@ void StarMesh::fold(std::uint32_t child, std::uint32_t parent, std::vector<std::
 
     // The parent's star without the removed triangles, then the child's; in place if it fits.
     std::uint32_t size = 0;
-    const std::uint32_t capacity = star_size_[parent];
+    const std::uint32_t capacity = vertices_[parent].star_size;
     for (std::uint32_t i = 0; i < capacity; ++i) {
-        const std::uint32_t t = arena_[star_begin_[parent] + i];
-        if (!has(t, child)) arena_[star_begin_[parent] + size++] = t;
+        const std::uint32_t t = arena_[vertices_[parent].star_begin + i];
+        if (!has(t, child)) arena_[vertices_[parent].star_begin + size++] = t;
     }
     if (size + kept > capacity) {
         const auto begin = static_cast<std::uint32_t>(arena_.size());
         arena_.resize(begin + size + kept);
-        std::copy_n(arena_.begin() + star_begin_[parent], size, arena_.begin() + begin);
-        star_begin_[parent] = begin;
+        std::copy_n(arena_.begin() + vertices_[parent].star_begin, size, arena_.begin() + begin);
+        vertices_[parent].star_begin = begin;
     }
-    for (std::uint32_t i = 0; i < star_size_[child]; ++i) {
-        const std::uint32_t t = arena_[star_begin_[child] + i];
+    for (std::uint32_t i = 0; i < vertices_[child].star_size; ++i) {
+        const std::uint32_t t = arena_[vertices_[child].star_begin + i];
         if (has(t, parent)) continue;
-        arena_[star_begin_[parent] + size++] = t;
+        arena_[vertices_[parent].star_begin + size++] = t;
         const std::uint32_t k = triangles_[t][0] == child ? 0 : triangles_[t][1] == child ? 1 : 2;
         triangles_[t][k] = parent;
         corners_changed.push_back(3 * t + k);
     }
-    star_size_[parent] = size;
-    star_size_[child] = 0;
+    vertices_[parent].star_size = size;
+    vertices_[child].star_size = 0;
     kinds_[child] = VertexKind::kDead;
     --live_vertices_;
 
     for (const std::uint32_t t : gone)
         for (const std::uint32_t w : triangles_[t])
             if (w != child && w != parent) {
-                auto* begin = arena_.data() + star_begin_[w];
-                std::uint32_t& n = star_size_[w];
+                auto* begin = arena_.data() + vertices_[w].star_begin;
+                std::uint32_t& n = vertices_[w].star_size;
                 auto* at = std::find(begin, begin + n, t);
                 *at = begin[--n];
             }
@@ -197,7 +195,7 @@ void StarMesh::fold(std::uint32_t child, std::uint32_t parent, std::vector<std::
 void StarMesh::vanish(std::span<const std::uint32_t> vertices, std::span<const std::uint32_t> triangles) {
     for (const std::uint32_t v : vertices) {
         kinds_[v] = VertexKind::kDead;
-        star_size_[v] = 0;
+        vertices_[v].star_size = 0;
     }
     live_vertices_ -= static_cast<std::uint32_t>(vertices.size());
     live_triangles_ -= static_cast<std::uint32_t>(triangles.size());

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "vec.hpp"
+#include "vertex.hpp"
 #include "vsplit/mesh.hpp"
 
 namespace vsplit::bake {
@@ -27,14 +28,14 @@ class StarMesh {
   public:
     explicit StarMesh(const Mesh& mesh);
 
-    std::uint32_t vertex_count() const { return static_cast<std::uint32_t>(positions_.size()); }
+    std::uint32_t vertex_count() const { return static_cast<std::uint32_t>(vertices_.size()); }
     std::uint32_t triangle_count() const { return static_cast<std::uint32_t>(triangles_.size()); }
     std::uint32_t live_triangles() const { return live_triangles_; }
     std::uint32_t live_vertices() const { return live_vertices_; }
 
-    const Float3& raw_position(std::uint32_t v) const { return positions_[v]; }
-    void set_raw_position(std::uint32_t v, const Float3& p) { positions_[v] = p; }
-    Double3 position(std::uint32_t v) const { return work(positions_[v]); }
+    const Float3& raw_position(std::uint32_t v) const { return vertices_[v].position; }
+    void set_raw_position(std::uint32_t v, const Float3& p) { vertices_[v].position = p; }
+    Double3 position(std::uint32_t v) const { return work(vertices_[v].position); }
     Double3 work(const Float3& p) const {
         return {(double(p.x) - centre_.x) * scale_, (double(p.y) - centre_.y) * scale_, (double(p.z) - centre_.z) * scale_};
     }
@@ -48,9 +49,24 @@ class StarMesh {
 
     /// A removed triangle keeps the corners that it had when it went.
     const Triangle& triangle(std::uint32_t t) const { return triangles_[t]; }
-    std::span<const std::uint32_t> star(std::uint32_t v) const { return {arena_.data() + star_begin_[v], star_size_[v]}; }
+    std::span<const std::uint32_t> star(std::uint32_t v) const {
+        return {arena_.data() + vertices_[v].star_begin, vertices_[v].star_size};
+    }
+    const VertexShape& shape(std::uint32_t v) const { return vertices_[v].shape; }
+    VertexShape& shape(std::uint32_t v) { return vertices_[v].shape; }
     VertexKind kind(std::uint32_t v) const { return kinds_[v]; }
     void fix(std::uint32_t v) { kinds_[v] = VertexKind::kFixed; }
+
+    /// Fetches ahead: the vertex; then the list of its star; then its triangles; then its neighbours.
+    void prefetch_vertex(std::uint32_t v) const { __builtin_prefetch(&vertices_[v]); }
+    void prefetch_star(std::uint32_t v) const { __builtin_prefetch(arena_.data() + vertices_[v].star_begin); }
+    void prefetch_triangles(std::uint32_t v) const {
+        for (const std::uint32_t t : star(v)) __builtin_prefetch(&triangles_[t]);
+    }
+    void prefetch_neighbours(std::uint32_t v) const {
+        for (const std::uint32_t t : star(v))
+            for (const std::uint32_t w : triangles_[t]) prefetch_vertex(w);
+    }
 
     /// Twice the area vector of a triangle.
     Double3 normal(const Triangle& t) const {
@@ -71,10 +87,8 @@ class StarMesh {
   private:
     void classify();
 
-    std::vector<Float3> positions_;
+    std::vector<Vertex> vertices_;
     std::vector<Triangle> triangles_;
-    std::vector<std::uint32_t> star_begin_;
-    std::vector<std::uint32_t> star_size_;
     std::vector<std::uint32_t> arena_;
     std::vector<VertexKind> kinds_;
     std::vector<std::uint32_t> input_vertices_;
