@@ -4,7 +4,6 @@
 // bake IN OUT.pmesh: the journey in code. Needs the baker, which is built in this tree and not installed.
 #include <cstdio>
 #include <utility>
-
 #include <vsplit/bake/collapse.hpp>
 #include <vsplit/bake/files.hpp>
 #include <vsplit/bake/meshes.hpp>
@@ -15,7 +14,8 @@ vsplit::Status bake(const char* in, const char* out) {
     if (!bytes) return bytes.error();
     auto file = vsplit::bake::parse_mesh(*bytes, ".ply");
     if (!file) return file.error();
-    std::printf("%s: %llu vertices welded\n", file->report.format.c_str(), static_cast<unsigned long long>(file->report.vertices_welded));
+    std::printf("%s: %llu vertices welded\n", file->report.format.c_str(),
+                static_cast<unsigned long long>(file->report.vertices_welded));
 
     vsplit::bake::CollapseOptions options;
     options.cost = vsplit::bake::Cost::kPaper;

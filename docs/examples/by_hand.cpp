@@ -6,7 +6,6 @@
 #include <fstream>
 #include <span>
 #include <vector>
-
 #include <vsplit/live_mesh.hpp>
 #include <vsplit/read.hpp>
 #include <vsplit/write.hpp>
@@ -23,7 +22,8 @@ vsplit::ProgressiveMesh square() {
     mesh.positions = {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}, {1, 1, 0.5f}};
     mesh.parents = {vsplit::kNoVertex, vsplit::kNoVertex, vsplit::kNoVertex, vsplit::kNoVertex, 0};
     mesh.triangles = {{0, 1, 2}, {0, 2, 3}, {0, 1, 4}, {0, 4, 3}};
-    mesh.corner_changes = {{0, 4}, {3, 4}};  // corner 0 of triangle 0, corner 0 of triangle 1: from vertex 0 to vertex 4
+    // Corner 0 of triangle 0 and corner 0 of triangle 1 go from vertex 0 to vertex 4.
+    mesh.corner_changes = {{0, 4}, {3, 4}};
     vsplit::Split split;
     split.vertices_end = 5;
     split.triangles_end = 4;
@@ -45,7 +45,8 @@ int main(int argc, char** argv) {
         std::fprintf(stderr, "%s\n", bytes.error().describe().c_str());
         return 1;
     }
-    std::ofstream(argv[1], std::ios::binary).write(reinterpret_cast<const char*>(bytes->data()), std::streamsize(bytes->size()));
+    std::ofstream(argv[1], std::ios::binary)
+        .write(reinterpret_cast<const char*>(bytes->data()), std::streamsize(bytes->size()));
 
     const auto again = vsplit::read_progressive_mesh(*bytes);
     if (!again || vsplit::cut(*again, 1).positions != vsplit::cut(mesh, 1).positions ||

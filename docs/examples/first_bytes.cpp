@@ -6,7 +6,6 @@
 #include <fstream>
 #include <span>
 #include <vector>
-
 #include <vsplit/read.hpp>
 
 int main(int argc, char** argv) {
@@ -23,8 +22,10 @@ int main(int argc, char** argv) {
         std::fprintf(stderr, "%s: %s\n", argv[1], info.error().describe().c_str());
         return 1;
     }
-    std::printf("%llu bytes: %u triangles\n", static_cast<unsigned long long>(info->base_offset + info->base_bytes), info->base_triangles);
+    std::printf("%llu bytes: %u triangles\n",
+                static_cast<unsigned long long>(info->base_offset + info->base_bytes), info->base_triangles);
     for (const vsplit::BlockInfo& block : info->blocks)
-        std::printf("%llu bytes: %u triangles, error %g\n", static_cast<unsigned long long>(block.offset + block.bytes), block.triangles_end,
+        std::printf("%llu bytes: %u triangles, error %g\n",
+                    static_cast<unsigned long long>(block.offset + block.bytes), block.triangles_end,
                     double(block.error));
 }

@@ -9,7 +9,6 @@
 #include <span>
 #include <utility>
 #include <vector>
-
 #include <vsplit/live_mesh.hpp>
 #include <vsplit/read.hpp>
 
@@ -28,6 +27,7 @@ int main(int argc, char** argv) {
     for (const double ratio : {0.01, 0.1, 0.4, 1.0}) {
         live.go_to(vsplit::level_for_triangles(live.state(), std::uint64_t(ratio * all)));
         // live.positions() and live.triangles() are what a renderer uploads.
-        std::printf("%zu triangles, %zu vertices, error %g\n", live.triangles().size(), live.positions().size(), live.error());
+        std::printf("%zu triangles, %zu vertices, error %g\n", live.triangles().size(),
+                    live.positions().size(), live.error());
     }
 }

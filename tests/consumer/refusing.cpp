@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The vsplit authors
 // SPDX-License-Identifier: MIT
 //
-// refusing FILE.pmesh: in a program that cannot catch, every cut of a file is an error, and the whole is none.
+// refusing FILE.pmesh: in a program that cannot catch, every cut of a file is an error, and the whole is
+// none.
 #include <cstddef>
 #include <cstdio>
 #include <cstring>
@@ -9,7 +10,6 @@
 #include <iterator>
 #include <span>
 #include <vector>
-
 #include <vsplit/live_mesh.hpp>
 #include <vsplit/mesh.hpp>
 #include <vsplit/progressive_mesh.hpp>
@@ -35,7 +35,9 @@ int main(int argc, char** argv) {
         }
     }
     const auto whole = vsplit::read_progressive_mesh(all);
-    if (!whole || vsplit::progressive_mesh_fault(*whole) || vsplit::mesh_fault(vsplit::cut(*whole, whole->splits.size()))) return 1;
+    if (!whole || vsplit::progressive_mesh_fault(*whole) ||
+        vsplit::mesh_fault(vsplit::cut(*whole, whole->splits.size())))
+        return 1;
     vsplit::Limits tight;
     tight.max_bytes = 16;
     const auto refused = vsplit::read_info(all, tight);
