@@ -19,8 +19,12 @@
 namespace vsplit::bake {
 namespace {
 
-/// What samples miss between them, and levels between those measured.
+/// What samples miss between them.
 constexpr double kSafety = 1.2;
+/// From one measured level to the next coarser.
+constexpr double kLevelRatio = 0.7;
+/// Between two measured levels, the error is at least this share of the coarser one's, so that a jump between them is not missed by much.
+constexpr double kShareOfCoarser = 0.7;
 /// Coarse levels look at the input's vertices in steps: the distance varies as slowly as their triangles are large.
 constexpr std::size_t kFullPassTriangles = 40000;
 /// A tree over a level is built where the level is small; above, the stars around a vertex's ancestor are near enough to exact.
@@ -62,10 +66,10 @@ struct Stars {
     std::vector<std::uint32_t> begin, triangles;
 };
 
-/// Squared distance from p to the triangles around a vertex.
-double star_distance2(const Mesh& mesh, const Stars& stars, std::uint32_t v, Double3 p) {
-    double least = std::numeric_limits<double>::infinity();
-    for (std::uint32_t s = stars.begin[v]; s < stars.begin[v + 1]; ++s) {
+/// Squared distance from p to the triangles around a vertex; below `enough2` any value that low will do.
+double star_distance2(const Mesh& mesh, const Stars& stars, std::uint32_t v, Double3 p, double enough2) {
+    double least = length2(p - to_double(mesh.positions[v]));
+    for (std::uint32_t s = stars.begin[v]; s < stars.begin[v + 1] && least > enough2; ++s) {
         const Triangle& t = mesh.triangles[stars.triangles[s]];
         least = std::min(least, distance2_to_triangle(p, to_double(mesh.positions[t[0]]), to_double(mesh.positions[t[1]]), to_double(mesh.positions[t[2]])));
     }
@@ -93,8 +97,9 @@ class Calibrator {
 
     ProgressiveMesh release() { return live_.release(); }
 
-    /// The two-sided distance between a level and the full mesh.
-    double measure(std::size_t level) {
+    /// The two-sided distance between a level and the full mesh, if it is more than about `enough`, and at most that otherwise.
+    double measure(std::size_t level, double enough) {
+        enough2_ = enough * enough;
         live_.go_to(level);
         const Mesh coarse = live_.snapshot();
         const Stars stars(coarse);
@@ -125,7 +130,7 @@ class Calibrator {
                 const auto v = std::uint32_t(i * step);
                 const std::uint32_t ancestor = ancestors[v];
                 double bound2 = std::numeric_limits<double>::infinity();
-                if (ancestor != kNoVertex) bound2 = star_distance2(coarse, stars, ancestor, to_double(full_.positions[v]));
+                if (ancestor != kNoVertex) bound2 = star_distance2(coarse, stars, ancestor, to_double(full_.positions[v]), enough2_);
                 probes[i] = {bound2, v};
             }
         });
@@ -143,7 +148,7 @@ class Calibrator {
         std::vector<Probe> probes(coarse.positions.size());
         tbb::parallel_for(tbb::blocked_range<std::size_t>(0, probes.size(), 4096), [&](const tbb::blocked_range<std::size_t>& range) {
             for (std::size_t v = range.begin(); v < range.end(); ++v)
-                probes[v] = {star_distance2(full_, full_stars_, std::uint32_t(v), to_double(coarse.positions[v])), std::uint32_t(v)};
+                probes[v] = {star_distance2(full_, full_stars_, std::uint32_t(v), to_double(coarse.positions[v]), enough2_), std::uint32_t(v)};
         });
         const double most = farthest(probes, [&](Probe& probe) {
             return probe.bound2 = tree_->closest(to_double(coarse.positions[probe.index])).distance2;
@@ -164,7 +169,10 @@ class Calibrator {
                 const auto t = std::uint32_t(i);
                 const Double3 p = centre(t);
                 double bound2 = std::numeric_limits<double>::infinity();
-                for (const std::uint32_t v : coarse.triangles[t]) bound2 = std::min(bound2, star_distance2(full_, full_stars_, v, p));
+                for (const std::uint32_t v : coarse.triangles[t]) {
+                    bound2 = std::min(bound2, star_distance2(full_, full_stars_, v, p, enough2_));
+                    if (bound2 <= enough2_) break;
+                }
                 probes[i] = {bound2, t};
             }
         });
@@ -209,6 +217,7 @@ class Calibrator {
     }
 
     LiveMesh live_;
+    double enough2_ = 0;
     Mesh full_;
     Stars full_stars_{full_};
     std::optional<TriangleTree> tree_;
@@ -218,9 +227,9 @@ class Calibrator {
 
 bool calibrate_errors(ProgressiveMesh& mesh, const Progress& progress) {
     if (mesh.splits.empty() || mesh.triangles.empty()) return true;
-    // Finest first: 3/4 of the triangles, then ever half, then the base.
+    // Finest first, down to the base.
     std::vector<std::size_t> levels;
-    for (double count = 0.75 * double(mesh.triangles.size()); count > double(mesh.base_triangles); count *= levels.size() == 1 ? 2.0 / 3 : 0.5) {
+    for (double count = 0.9 * double(mesh.triangles.size()); count > double(mesh.base_triangles); count *= kLevelRatio) {
         const std::size_t level = level_for_triangles(mesh, std::uint64_t(count));
         if (level > 0 && (levels.empty() || level < levels.back())) levels.push_back(level);
     }
@@ -232,12 +241,13 @@ bool calibrate_errors(ProgressiveMesh& mesh, const Progress& progress) {
         Calibrator calibrator(std::move(mesh));
         for (const std::size_t level : levels) {
             if (progress && !progress("measure errors", double(measured.size()) / double(levels.size()))) return false;
-            measured.push_back(std::max(kSafety * calibrator.measure(level), measured.empty() ? 0.0 : measured.back()));
+            // Coarser levels are no nearer: what is below the last result need not be known exactly.
+            const double last = measured.empty() ? 0.0 : measured.back();
+            measured.push_back(std::max(last, kSafety * calibrator.measure(level, 0.5 / kSafety * last)));
         }
         mesh = calibrator.release();
     }
-    // Between two measured levels the estimates say how the error grows: the larger of the two scales bounds it, within the two. Finer than the
-    // finest measured level the estimates keep its scale.
+    // Between two measured levels the estimates say how the error grows: the larger of the two scales, within the two.
     const auto scale_of = [&](std::size_t i) {
         const double estimate = double(mesh.splits[levels[i]].error);
         return estimate > 0 ? measured[i] / estimate : 0;
@@ -249,7 +259,7 @@ bool calibrate_errors(ProgressiveMesh& mesh, const Progress& progress) {
     for (std::size_t level = 0; level < mesh.splits.size(); ++level) {
         while (at > 0 && levels[at - 1] <= level) --at;
         const double scale = std::max(scales[at], at > 0 ? scales[at - 1] : 0.0);
-        const double wanted = scale > 0 ? scale * double(mesh.splits[level].error) : measured[at];
+        const double wanted = std::max(scale * double(mesh.splits[level].error), kShareOfCoarser * measured[at]);
         errors[level] = float(std::clamp(wanted, at > 0 ? measured[at - 1] : 0.0, measured[at]));
     }
     float least = 0;
