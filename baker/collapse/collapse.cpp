@@ -4,6 +4,7 @@
 
 #include <ctime>
 
+#include "calibrate.hpp"
 #include "collapser.hpp"
 
 namespace vsplit::bake {
@@ -25,12 +26,20 @@ Result<CollapseResult> collapse(const Mesh& mesh, const CollapseOptions& options
     if (!(options.boundary_weight >= 0) || !(options.volume_weight >= 0) || !(options.regularisation > 0) ||
         !(options.deviation_limit >= 0) || !(options.lock_features_degrees >= 0))
         return refuse("a collapse option is negative");
+    const Error cancelled{ErrorCode::kCancelled, "cancelled", Error::kNowhere, 0};
     CollapseResult result;
-    const double start = cpu_seconds();
-    Collapser collapser(mesh, options);
-    if (!collapser.run(progress)) return Error{ErrorCode::kCancelled, "cancelled", Error::kNowhere, 0};
-    result.mesh = collapser.finish(result.report);
+    double start = cpu_seconds();
+    {
+        Collapser collapser(mesh, options);
+        if (!collapser.run(progress)) return cancelled;
+        result.mesh = collapser.finish(result.report);
+    }
     result.report.collapse_cpu_seconds = cpu_seconds() - start;
+    if (options.calibrate) {
+        start = cpu_seconds();
+        if (!calibrate_errors(result.mesh, progress)) return cancelled;
+        result.report.calibrate_cpu_seconds = cpu_seconds() - start;
+    }
     return result;
 }
 
