@@ -15,14 +15,18 @@
 namespace vsplit::bake {
 namespace {
 
-constexpr float kNeverCost = std::numeric_limits<float>::infinity();
+Float3 to_float(Double3 p) {
+    return {float(p.x), float(p.y), float(p.z)};
+}
+Double3 to_double(Float3 p) {
+    return {p.x, p.y, p.z};
+}
 
-Float3 to_float(Double3 p) { return {float(p.x), float(p.y), float(p.z)}; }
-Double3 to_double(Float3 p) { return {p.x, p.y, p.z}; }
-
-/// Visits each neighbour of `v`; those that two triangles name come once where the fan is closed and consistently oriented.
+/// Visits each neighbour of `v`; those that two triangles name come once where the fan is closed and
+/// consistently oriented.
 template <class Visit>
-void visit_neighbours(const StarMesh& mesh, std::uint32_t v, std::vector<Neighbour>& scratch, const Visit& visit) {
+void visit_neighbours(const StarMesh& mesh, std::uint32_t v, std::vector<Neighbour>& scratch,
+                      const Visit& visit) {
     if (mesh.kind(v) == VertexKind::kInner) {
         for (const std::uint32_t t : mesh.star(v)) {
             const Triangle& c = mesh.triangle(t);
@@ -45,24 +49,27 @@ Collapser::Collapser(const Mesh& mesh, const CollapseOptions& options)
       record_(!mesh.weights.empty()),
       strictness_{options.min_normal_cosine, options.min_quality, 60, true},
       histories_(mesh_.vertex_count()),
-      targets_(mesh_.vertex_count(), kNoVertex) {
+      targets_(mesh_.vertex_count()) {
     if (!mesh.weights.empty()) {
         weights_.reserve(mesh_.vertex_count());
         for (const std::uint32_t v : mesh_.input_vertices()) weights_.push_back(mesh.weights[v]);
     }
     lock(mesh);
     for (std::uint32_t v = 0; v < mesh_.vertex_count() && components_.count() > 1; ++v)
-        if (mesh_.kind(v) != VertexKind::kDead && !weights_.empty() && weights_[v] > 1) components_.keep(components_.of(v));
-    tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, mesh_.vertex_count(), 4096), [&](const tbb::blocked_range<std::uint32_t>& range) {
-        std::vector<Neighbour> scratch;
-        for (std::uint32_t v = range.begin(); v < range.end(); ++v) {
-            if (mesh_.kind(v) == VertexKind::kDead) continue;
-            rebuild_shape(mesh_, v, options_.boundary_weight, scratch);
-            std::copy_n(mesh_.shape(v).area, 3, histories_[v].normal);
-            if (!weights_.empty() && std::isfinite(weights_[v])) mesh_.shape(v).weight = weights_[v];
-            histories_[v].witness = to_float(mesh_.position(v));
-        }
-    });
+        if (mesh_.kind(v) != VertexKind::kDead && !weights_.empty() && weights_[v] > 1)
+            components_.keep(components_.of(v));
+    tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, mesh_.vertex_count(), 4096),
+                      [&](const tbb::blocked_range<std::uint32_t>& range) {
+                          std::vector<Neighbour> scratch;
+                          for (std::uint32_t v = range.begin(); v < range.end(); ++v) {
+                              if (mesh_.kind(v) == VertexKind::kDead) continue;
+                              rebuild_shape(mesh_, v, options_.boundary_weight, scratch);
+                              std::copy_n(mesh_.vertex(v).area, 3, histories_[v].normal);
+                              if (!weights_.empty() && std::isfinite(weights_[v]))
+                                  mesh_.vertex(v).weight = weights_[v];
+                              histories_[v].witness = to_float(mesh_.position(v));
+                          }
+                      });
     if (options.cost == Cost::kPaper) paper_ = std::make_unique<PaperCost>(mesh_);
 }
 
@@ -98,51 +105,45 @@ Candidate Collapser::evaluate(std::uint32_t u, std::uint32_t v, Fold fold) const
     if (paper_) {
         thread_local EdgeStar star;
         star.gather(mesh_, u, v);
-        return paper_->evaluate(mesh_, star, fold, options_.placement, double(mesh_.shape(u).weight), double(mesh_.shape(v).weight));
+        return paper_->evaluate(mesh_, star, fold, options_.placement, double(mesh_.vertex(u).weight),
+                                double(mesh_.vertex(v).weight));
     }
-    const EdgeQuadric edge(mesh_.position(u), mesh_.position(v), mesh_.shape(u), mesh_.shape(v), options_);
-    Candidate candidate = fold == Fold::kIntoFirst                         ? edge.first()
-                          : fold == Fold::kIntoSecond                      ? edge.second()
-                          : options_.placement == Placement::kOptimal ? edge.best()
-                                                                      : edge.endpoint(false);
-    candidate.cost = std::max(candidate.cost, 0.0) + edge.tie_break();
-    return candidate;
+    const EdgeQuadric<double> edge(shape_of(mesh_, u), shape_of(mesh_, v), options_);
+    const auto placed = fold == Fold::kIntoFirst                    ? edge.end(-1)
+                        : fold == Fold::kIntoSecond                 ? edge.end(1)
+                        : options_.placement == Placement::kOptimal ? edge.best()
+                                                                    : edge.better_end();
+    return {edge.middle() + placed.place, edge.price(placed.cost)};
 }
 
-void Collapser::list_options(std::uint32_t u) {
-    listed_.clear();
-    if (mesh_.star(u).size() > strictness_.max_valence) return;
-    visit_neighbours(mesh_, u, ring_, [&](std::uint32_t v) {
-        const Fold fold = fold_rule(mesh_, u, v);
-        if (fold != Fold::kNever) listed_.push_back({v, fold, evaluate(u, v, fold)});
-    });
-    std::sort(listed_.begin(), listed_.end(), [](const Option& a, const Option& b) {
-        return a.candidate.cost != b.candidate.cost ? a.candidate.cost < b.candidate.cost : a.other < b.other;
-    });
+void Collapser::price(std::uint32_t u, EdgeList& list) const {
+    list.costs.resize(list.others.size());
+    const bool optimal = !paper_ && options_.placement == Placement::kOptimal;
+    if (optimal) price_edges(mesh_, u, list.others, options_, list.costs.data());
+    for (std::size_t i = 0; i < list.others.size(); ++i) {
+        if (list.folds[i] == Fold::kNever)
+            list.costs[i] = kNeverCost;
+        else if (!optimal || list.folds[i] != Fold::kAnywhere)
+            list.costs[i] = float(evaluate(u, list.others[i], list.folds[i]).cost);
+    }
 }
 
-float Collapser::cheapest(std::uint32_t u) {
-    thread_local std::vector<Neighbour> scratch;
-    double best = std::numeric_limits<double>::infinity();
-    std::uint32_t target = kNoVertex;
-    if (mesh_.star(u).size() > strictness_.max_valence) return kNeverCost;
-    visit_neighbours(mesh_, u, scratch, [&](std::uint32_t v) {
-        const Fold fold = fold_rule(mesh_, u, v);
-        if (fold == Fold::kNever) return;
-        const double cost = evaluate(u, v, fold).cost;
-        if (cost < best || (cost == best && v < target)) {
-            best = cost;
-            target = v;
-        }
-    });
-    targets_[u] = target;
-    return target == kNoVertex ? kNeverCost : float(best);
+void Collapser::list_edges(std::uint32_t u, EdgeList& list) const {
+    list.clear();
+    if (mesh_.star(u).size() <= strictness_.max_valence)
+        visit_neighbours(mesh_, u, list.scratch, [&](std::uint32_t v) {
+            if (!owns(u, v)) return;
+            if (const Fold fold = fold_rule(mesh_, u, v); fold != Fold::kNever) list.add(v, fold);
+        });
+    price(u, list);
 }
 
-double Collapser::deviation(const EdgeStar& star, Double3 place, Float3& witness, float& place_deviation) const {
+double Collapser::deviation(const EdgeStar& star, Double3 place, Float3& witness,
+                            float& place_deviation) const {
     const auto to_new = [&](Double3 p) {
         double nearest = std::numeric_limits<double>::infinity();
-        for (const EdgeStar::Wing& wing : star.wings) nearest = std::min(nearest, distance2_to_triangle(p, place, wing.pa, wing.pb));
+        for (const EdgeStar::Wing& wing : star.wings)
+            nearest = std::min(nearest, distance2_to_triangle(p, place, wing.pa, wing.pb));
         return nearest;
     };
     double farthest = std::max(to_new(star.pu), to_new(star.pv));
@@ -158,11 +159,14 @@ double Collapser::deviation(const EdgeStar& star, Double3 place, Float3& witness
 
     double to_old = std::numeric_limits<double>::infinity();
     for (const EdgeStar::Wing& wing : star.wings)
-        to_old = std::min(to_old, distance2_to_triangle(place, wing.at_first ? star.pu : star.pv, wing.pa, wing.pb));
-    for (const Double3 opposite : star.opposite_places) to_old = std::min(to_old, distance2_to_triangle(place, star.pu, star.pv, opposite));
+        to_old = std::min(to_old,
+                          distance2_to_triangle(place, wing.at_first ? star.pu : star.pv, wing.pa, wing.pb));
+    for (const Double3 opposite : star.opposite_places)
+        to_old = std::min(to_old, distance2_to_triangle(place, star.pu, star.pv, opposite));
     const double du = length(place - star.pu), dv = length(place - star.pv);
     const double t = du + dv > 0 ? du / (du + dv) : 0;
-    const double carried = (1 - t) * double(histories_[star.u].deviation) + t * double(histories_[star.v].deviation);
+    const double carried =
+        (1 - t) * double(histories_[star.u].deviation) + t * double(histories_[star.v].deviation);
     place_deviation = float(std::sqrt(to_old) + carried);
     return std::max(std::sqrt(farthest), double(place_deviation));
 }
@@ -180,9 +184,9 @@ bool Collapser::attempt(std::uint32_t u, const Option& option, Bucket bucket, fl
     Float3 witness;
     float place_deviation = 0;
     const double d = deviation(star_, place, witness, place_deviation);
-    const double weight = 0.5 * (double(mesh_.shape(u).weight) + double(mesh_.shape(option.other).weight));
+    const double weight = 0.5 * (double(mesh_.vertex(u).weight) + double(mesh_.vertex(option.other).weight));
     // The same dimension as the cost, so that one factor serves every level: area^0.5 times distance^4.
-    const double size = double(mesh_.shape(u).size) + double(mesh_.shape(option.other).size);
+    const double size = double(mesh_.vertex(u).size) + double(mesh_.vertex(option.other).size);
     const double limit = paper_ ? 0 : options_.deviation_limit * d * d * d * d * std::sqrt(size) * weight;
     cost = float(std::max(option.candidate.cost, limit));
     if (BucketQueue::bucket_of(cost) > bucket) return false;
@@ -190,10 +194,12 @@ bool Collapser::attempt(std::uint32_t u, const Option& option, Bucket bucket, fl
     return true;
 }
 
-void Collapser::apply(const EdgeStar& star, const Option& option, Float3 place, Float3 witness, float place_deviation, float error) {
+void Collapser::apply(const EdgeStar& star, const Option& option, Float3 place, Float3 witness,
+                      float place_deviation, float error) {
     std::uint32_t parent = star.u, child = star.v;
     const bool may_swap = option.fold == Fold::kAnywhere && mesh_.kind(star.u) == mesh_.kind(star.v);
-    if (option.fold == Fold::kIntoSecond || (option.fold == Fold::kAnywhere && mesh_.kind(star.v) == VertexKind::kCurve && !may_swap) ||
+    if (option.fold == Fold::kIntoSecond ||
+        (option.fold == Fold::kAnywhere && mesh_.kind(star.v) == VertexKind::kCurve && !may_swap) ||
         (may_swap && mesh_.star(star.v).size() > mesh_.star(star.u).size()))
         std::swap(parent, child);
 
@@ -201,14 +207,14 @@ void Collapser::apply(const EdgeStar& star, const Option& option, Float3 place, 
     for (const EdgeStar::Wing& wing : star.wings) {
         const TrianglePart before(wing.normal), after(cross(wing.pa - at, wing.pb - at));
         for (const std::uint32_t w : {wing.a, wing.b}) {
-            add_triangle(mesh_.shape(w), before, -1);
-            add_triangle(mesh_.shape(w), after, 1);
+            add_triangle(mesh_.vertex(w), before, -1);
+            add_triangle(mesh_.vertex(w), after, 1);
         }
     }
     for (std::size_t i = 0; i < star.opposite.size(); ++i) {
         Double3 n = cross(star.pv - star.pu, star.opposite_places[i] - star.pu);
         if (!star.forward[i]) n = n * -1.0;
-        add_triangle(mesh_.shape(star.opposite[i]), TrianglePart(n), -1);
+        add_triangle(mesh_.vertex(star.opposite[i]), TrianglePart(n), -1);
     }
 
     error_ = std::max(error_, error);
@@ -224,25 +230,45 @@ void Collapser::apply(const EdgeStar& star, const Option& option, Float3 place, 
     for (std::size_t i = 0; i < 3; ++i) history.normal[i] += histories_[child].normal[i];
     history.deviation = place_deviation;
     history.witness = witness;
-    VertexShape& shape = mesh_.shape(parent);
-    shape.weight = 0.5f * (shape.weight + mesh_.shape(child).weight);
+    Vertex& shape = mesh_.vertex(parent);
+    shape.weight = 0.5f * (shape.weight + mesh_.vertex(child).weight);
     if (!weights_.empty()) weights_[parent] = 0.5f * (weights_[parent] + weights_[child]);
     if (paper_) paper_->merge(parent, child);
     rebuild_shape(mesh_, parent, options_.boundary_weight, ring_);
 
-    // The ring: its triangles changed, so its costs did; they are looked at again when their turn comes.
-    touched_.clear();
-    visit_neighbours(mesh_, parent, ring_, [&](std::uint32_t w) { touched_.push_back(w); });
-    const Bucket now = BucketQueue::bucket_of(float(option.candidate.cost));
-    for (const std::uint32_t w : touched_) {
+    ring_edges_.clear();
+    visit_neighbours(mesh_, parent, ring_, [&](std::uint32_t w) { ring_edges_.add(w, Fold::kNever); });
+    for (const std::uint32_t w : ring_edges_.others)
         if (mesh_.kind(w) != VertexKind::kInner) rebuild_shape(mesh_, w, options_.boundary_weight, ring_);
-        targets_[w] = kNoVertex;
+    queue_.remove(child);
+    reprice(parent, child, BucketQueue::bucket_of(float(option.candidate.cost)));
+}
+
+void Collapser::reprice(std::uint32_t parent, std::uint32_t child, Bucket now) {
+    for (std::size_t i = 0; i < ring_edges_.others.size(); ++i)
+        ring_edges_.folds[i] = fold_rule(mesh_, parent, ring_edges_.others[i]);
+    price(parent, ring_edges_);
+    Target best;
+    for (std::size_t i = 0; i < ring_edges_.others.size(); ++i) {
+        const std::uint32_t w = ring_edges_.others[i];
+        const float cost = ring_edges_.costs[i];
+        Target& other = targets_[w];
+        if (owns(parent, w)) {
+            best.improve(w, cost);
+        } else if (other.vertex != parent && other.vertex != child && cost < other.cost) {
+            other = {parent, cost};
+            queue_.push(w, BucketQueue::bucket_of(cost));
+            continue;
+        }
+        // What it was for is gone, or what stopped it may be: it lists its edges when its turn comes.
+        if (other.vertex == parent || other.vertex == child || !queue_.contains(w)) other.vertex = kNoVertex;
         if (!queue_.contains(w)) queue_.push(w, now);
     }
-    queue_.remove(child);
-    const float cost = cheapest(parent);
-    if (cost < kNeverCost) queue_.push(parent, BucketQueue::bucket_of(cost));
-    else queue_.remove(parent);
+    targets_[parent] = best;
+    if (best.vertex != kNoVertex)
+        queue_.push(parent, BucketQueue::bucket_of(best.cost));
+    else
+        queue_.remove(parent);
 }
 
 void Collapser::prefetch() const {
@@ -256,38 +282,47 @@ void Collapser::prefetch() const {
 
 void Collapser::process(std::uint32_t u, Bucket bucket) {
     if (mesh_.kind(u) == VertexKind::kDead) return;
-    if (const std::uint32_t v = targets_[u]; v != kNoVertex && mesh_.kind(v) != VertexKind::kDead) {
+    // Most often the target is still the best; its price is that of today.
+    Target tried;
+    if (const std::uint32_t v = targets_[u].vertex; v != kNoVertex && mesh_.kind(v) != VertexKind::kDead) {
         if (const Fold fold = fold_rule(mesh_, u, v); fold != Fold::kNever) {
-            float cost;
-            if (attempt(u, {v, fold, evaluate(u, v, fold)}, bucket, cost)) return;
-            if (cost < kNeverCost) {
-                queue_.push(u, BucketQueue::bucket_of(cost));
-                return;
+            const Option option{v, fold, evaluate(u, v, fold)};
+            if (BucketQueue::bucket_of(float(option.candidate.cost)) <= bucket) {
+                tried.vertex = v;
+                if (attempt(u, option, bucket, tried.cost)) return;
             }
         }
     }
-    list_options(u);
-    float wait = kNeverCost;
-    targets_[u] = kNoVertex;
-    for (std::size_t i = 0; i < listed_.size(); ++i) {
-        const Option option = listed_[i];
-        float cost = float(option.candidate.cost);
-        const bool due = BucketQueue::bucket_of(cost) <= bucket;
-        if (due && attempt(u, option, bucket, cost)) return;
-        if (cost < wait) {
-            wait = cost;
-            targets_[u] = option.other;
+    list_edges(u, listed_);
+    Target wait;
+    for (;;) {
+        Target next;
+        std::size_t at = 0;
+        for (std::size_t i = 0; i < listed_.others.size(); ++i)
+            if (next.improve(listed_.others[i], listed_.costs[i])) at = i;
+        if (next.vertex == kNoVertex) break;
+        listed_.costs[at] = kNeverCost;  // not again
+        const bool due = BucketQueue::bucket_of(next.cost) <= bucket;
+        if (due) {
+            if (next.vertex == tried.vertex)
+                next.cost = tried.cost;
+            else if (attempt(u, {next.vertex, listed_.folds[at], evaluate(u, next.vertex, listed_.folds[at])},
+                             bucket, next.cost))
+                return;
         }
+        wait.improve(next.vertex, next.cost);
         if (!due) break;
     }
-    if (wait < kNeverCost) queue_.push(u, BucketQueue::bucket_of(wait));
+    targets_[u] = wait;
+    if (wait.vertex != kNoVertex) queue_.push(u, BucketQueue::bucket_of(wait.cost));
 }
 
 void Collapser::process_component(std::uint32_t component, Bucket bucket) {
     if (!components_.may_vanish(component)) return;
     if (components_.live_triangles(component) > Components::kMaxVanishing) {
         // Not small enough yet; again when all costs have doubled.
-        if (bucket + 4 < BucketQueue::bucket_of(kNeverCost)) queue_.push(component_item(component), Bucket(bucket + 4));
+        if (bucket + 4 < BucketQueue::bucket_of(kNeverCost))
+            queue_.push(component_item(component), Bucket(bucket + 4));
         return;
     }
     const auto vertices = components_.live_vertices(mesh_, component);
@@ -309,23 +344,30 @@ void Collapser::process_component(std::uint32_t component, Bucket bucket) {
 
 bool Collapser::run(const Progress& progress) {
     if (mesh_.triangle_count() == 0) return true;
-    std::vector<float> costs(mesh_.vertex_count(), kNeverCost);
-    tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, mesh_.vertex_count(), 2048), [&](const tbb::blocked_range<std::uint32_t>& range) {
-        for (std::uint32_t v = range.begin(); v < range.end(); ++v)
-            if (mesh_.kind(v) != VertexKind::kDead) costs[v] = cheapest(v);
-    });
+    tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, mesh_.vertex_count(), 2048),
+                      [&](const tbb::blocked_range<std::uint32_t>& range) {
+                          EdgeList list;
+                          for (std::uint32_t v = range.begin(); v < range.end(); ++v) {
+                              if (mesh_.kind(v) == VertexKind::kDead) continue;
+                              list_edges(v, list);
+                              for (std::size_t i = 0; i < list.others.size(); ++i)
+                                  targets_[v].improve(list.others[i], list.costs[i]);
+                          }
+                      });
     for (std::uint32_t v = 0; v < mesh_.vertex_count(); ++v)
-        if (costs[v] < kNeverCost) queue_.push(v, BucketQueue::bucket_of(costs[v]));
-    std::vector<float>().swap(costs);
+        if (targets_[v].vertex != kNoVertex) queue_.push(v, BucketQueue::bucket_of(targets_[v].cost));
     for (std::uint32_t c = 0; c < components_.count(); ++c)
         if (components_.may_vanish(c)) {
             const double reach = components_.reach(c);
-            const double limit = paper_ ? reach : std::max(options_.deviation_limit, 1.0) * reach * reach * reach * reach * reach;
+            const double limit =
+                paper_ ? reach
+                       : std::max(options_.deviation_limit, 1.0) * reach * reach * reach * reach * reach;
             queue_.push(component_item(c), BucketQueue::bucket_of(float(limit)));
         }
 
     const double total = double(mesh_.triangle_count());
-    // Later passes get past what a guard stopped; the shape of the coarsest levels counts less than that there is one.
+    // Later passes get past what a guard stopped; the shape of the coarsest levels counts less than that
+    // there is one.
     const Strictness passes[] = {strictness_, {0.0, 1e-3, 1000, true}, {-0.5, 1e-5, 1u << 30, false}};
     for (const Strictness& strictness : passes) {
         strictness_ = strictness;
@@ -333,7 +375,7 @@ bool Collapser::run(const Progress& progress) {
             if (mesh_.live_vertices() <= 64) break;
             for (std::uint32_t v = 0; v < mesh_.vertex_count(); ++v)
                 if (mesh_.kind(v) != VertexKind::kDead) {
-                    targets_[v] = kNoVertex;
+                    targets_[v].vertex = kNoVertex;
                     queue_.push(v, 0);
                 }
         }
@@ -341,9 +383,13 @@ bool Collapser::run(const Progress& progress) {
         Bucket bucket = 0;
         for (std::uint64_t count = 0; queue_.pop(item, bucket); ++count) {
             prefetch();
-            if (item < mesh_.vertex_count()) process(item, bucket);
-            else process_component(item - mesh_.vertex_count(), bucket);
-            if (progress && (count & 0x3FFF) == 0 && !progress("collapse", 1 - double(mesh_.live_triangles()) / total)) return false;
+            if (item < mesh_.vertex_count())
+                process(item, bucket);
+            else
+                process_component(item - mesh_.vertex_count(), bucket);
+            if (progress && (count & 0x3FFF) == 0 &&
+                !progress("collapse", 1 - double(mesh_.live_triangles()) / total))
+                return false;
         }
     }
     return true;
@@ -353,12 +399,14 @@ ProgressiveMesh Collapser::finish(CollapseReport& report) {
     report.collapses = record_.size();
     report.components = components_.count();
     report.components_vanished = vanished_;
-    for (std::uint32_t v = 0; v < mesh_.vertex_count(); ++v) report.fixed_vertices += mesh_.kind(v) == VertexKind::kFixed;
-    report.stopped_by = mesh_.triangle_count() == 0 ? "there is nothing to collapse"
-                                                    : "every remaining edge is fixed, or its collapse would change the topology";
+    for (std::uint32_t v = 0; v < mesh_.vertex_count(); ++v)
+        report.fixed_vertices += mesh_.kind(v) == VertexKind::kFixed;
+    report.stopped_by = mesh_.triangle_count() == 0
+                            ? "there is nothing to collapse"
+                            : "every remaining edge is fixed, or its collapse would change the topology";
     // Only the mesh itself is needed from here on.
     std::vector<VertexHistory>().swap(histories_);
-    std::vector<std::uint32_t>().swap(targets_);
+    std::vector<Target>().swap(targets_);
     paper_.reset();
     ProgressiveMesh mesh = record_.finish(mesh_, weights_, nullptr);
     const float unit = float(1 / mesh_.scale());

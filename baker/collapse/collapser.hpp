@@ -4,6 +4,7 @@
 // The loop: cheapest edge first, guarded, recorded.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -30,6 +31,7 @@ class Collapser {
 
   private:
     using Bucket = BucketQueue::Bucket;
+    static constexpr float kNeverCost = std::numeric_limits<float>::infinity();
 
     /// An edge of the vertex at hand, placed and priced.
     struct Option {
@@ -38,17 +40,51 @@ class Collapser {
         Candidate candidate;
     };
 
+    /// Edges of one vertex with their costs.
+    struct EdgeList {
+        std::vector<std::uint32_t> others;
+        std::vector<Fold> folds;
+        std::vector<float> costs;
+        std::vector<Neighbour> scratch;
+        void clear() {
+            others.clear();
+            folds.clear();
+        }
+        void add(std::uint32_t other, Fold fold) {
+            others.push_back(other);
+            folds.push_back(fold);
+        }
+    };
+
+    /// The edge for which a vertex waits, and its cost when it was last looked at.
+    struct Target {
+        std::uint32_t vertex = kNoVertex;
+        float cost = kNeverCost;
+        bool improve(std::uint32_t other, float price) {
+            const bool better = price < cost || (price == cost && price < kNeverCost && other < vertex);
+            if (better) *this = {other, price};
+            return better;
+        }
+    };
+
     void lock(const Mesh& mesh);
     Candidate evaluate(std::uint32_t u, std::uint32_t v, Fold fold) const;
-    void list_options(std::uint32_t u);
-    float cheapest(std::uint32_t u);
+    /// Each edge is priced once: for the end that comes first, which waits in the queue with it.
+    static bool owns(std::uint32_t u, std::uint32_t v) { return u < v; }
+    /// Prices all edges of the list, which are those of `u`.
+    void price(std::uint32_t u, EdgeList& list) const;
+    /// The edges that `u` owns, with their costs.
+    void list_edges(std::uint32_t u, EdgeList& list) const;
     void prefetch() const;
     void process(std::uint32_t u, Bucket bucket);
     void process_component(std::uint32_t component, Bucket bucket);
     /// True if it was done; false sets `cost` to what it has to wait for (infinity: never as things are).
     bool attempt(std::uint32_t u, const Option& option, Bucket bucket, float& cost);
     double deviation(const EdgeStar& star, Double3 place, Float3& witness, float& place_deviation) const;
-    void apply(const EdgeStar& star, const Option& option, Float3 place, Float3 witness, float place_deviation, float error);
+    void apply(const EdgeStar& star, const Option& option, Float3 place, Float3 witness,
+               float place_deviation, float error);
+    /// After a collapse: prices the new vertex's edges, and offers them to those neighbours who own them.
+    void reprice(std::uint32_t parent, std::uint32_t child, Bucket now);
     std::uint32_t component_item(std::uint32_t component) const { return mesh_.vertex_count() + component; }
 
     const CollapseOptions& options_;
@@ -60,15 +96,15 @@ class Collapser {
     std::unique_ptr<PaperCost> paper_;
     Strictness strictness_;
     std::vector<VertexHistory> histories_;
-    std::vector<float> weights_;          // empty: none painted
-    std::vector<std::uint32_t> targets_;  // cheapest edge, or kNoVertex: list all again
-    float error_ = 0;                     // the largest so far, working units
+    std::vector<float> weights_;   // empty: none painted
+    std::vector<Target> targets_;  // kNoVertex: list all again
+    float error_ = 0;              // the largest so far, working units
     std::uint64_t vanished_ = 0;
 
-    std::vector<Option> listed_;
+    EdgeList listed_;
     std::vector<Neighbour> ring_;
     EdgeStar star_;
-    std::vector<std::uint32_t> touched_;
+    EdgeList ring_edges_;  // of the new vertex
 };
 
 }  // namespace vsplit::bake

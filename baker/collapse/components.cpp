@@ -19,7 +19,9 @@ struct Box {
 };
 
 double gap(const Box& a, const Box& b) {
-    const auto axis = [](double al, double ah, double bl, double bh) { return std::max({0.0, al - bh, bl - ah}); };
+    const auto axis = [](double al, double ah, double bl, double bh) {
+        return std::max({0.0, al - bh, bl - ah});
+    };
     return length({axis(a.low.x, a.high.x, b.low.x, b.high.x), axis(a.low.y, a.high.y, b.low.y, b.high.y),
                    axis(a.low.z, a.high.z, b.low.z, b.high.z)});
 }
@@ -71,15 +73,20 @@ Components::Components(const StarMesh& mesh) {
     for (std::uint32_t v = 0; v < vertices; ++v)
         if (mesh.kind(v) != VertexKind::kDead) members_[next[component_[v]]++] = v;
 
-    // The gap to the nearest of the larger parts: those go later. Among very many parts only the largest are asked.
+    // The gap to the nearest of the larger parts: those go later. Among very many parts only the largest are
+    // asked.
     std::vector<std::uint32_t> by_size(alive_);
     std::iota(by_size.begin(), by_size.end(), 0u);
-    std::stable_sort(by_size.begin(), by_size.end(), [&](std::uint32_t a, std::uint32_t b) { return boxes[a].diagonal() > boxes[b].diagonal(); });
+    std::stable_sort(by_size.begin(), by_size.end(), [&](std::uint32_t a, std::uint32_t b) {
+        return boxes[a].diagonal() > boxes[b].diagonal();
+    });
     constexpr std::size_t kAsked = 4096;
     for (std::size_t i = 0; i < by_size.size(); ++i) {
         double nearest = std::numeric_limits<double>::infinity();
-        for (std::size_t j = 0; j < std::min(i, kAsked) && nearest > 0; ++j) nearest = std::min(nearest, gap(boxes[by_size[i]], boxes[by_size[j]]));
-        reach_[by_size[i]] = 0.5 * boxes[by_size[i]].diagonal() + (i == 0 ? boxes[by_size[0]].diagonal() : nearest);
+        for (std::size_t j = 0; j < std::min(i, kAsked) && nearest > 0; ++j)
+            nearest = std::min(nearest, gap(boxes[by_size[i]], boxes[by_size[j]]));
+        reach_[by_size[i]] =
+            0.5 * boxes[by_size[i]].diagonal() + (i == 0 ? boxes[by_size[0]].diagonal() : nearest);
     }
 }
 

@@ -23,12 +23,16 @@ class Components {
     std::uint32_t live_triangles(std::uint32_t component) const { return triangles_[component]; }
     void lose(std::uint32_t component, std::uint32_t triangles) { triangles_[component] -= triangles; }
 
-    /// How far its points may be from the rest of the mesh, working units: its extent and the gap to the nearest larger part.
+    /// How far its points may be from the rest of the mesh, working units: its extent and the gap to the
+    /// nearest larger part.
     double reach(std::uint32_t component) const { return reach_[component]; }
     /// The last part never vanishes, nor one with a fixed vertex or painted weight above 1.
     bool may_vanish(std::uint32_t component) const { return alive_ > 1 && !kept_[component]; }
     void keep(std::uint32_t component) { kept_[component] = true; }
-    void vanish(std::uint32_t component) { triangles_[component] = 0; --alive_; }
+    void vanish(std::uint32_t component) {
+        triangles_[component] = 0;
+        --alive_;
+    }
     /// Some vertex of the part, from which to collect the others.
     std::vector<std::uint32_t> live_vertices(const StarMesh& mesh, std::uint32_t component) const;
 

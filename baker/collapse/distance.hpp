@@ -8,8 +8,8 @@
 
 namespace vsplit::bake {
 
-/// Squared distance from p to the triangle abc, by the Voronoi regions of its parts (Ericson, Real-Time Collision Detection, 2005,
-/// section 5.1.5). A degenerate triangle is its vertices and edges.
+/// Squared distance from p to the triangle abc, by the Voronoi regions of its parts (Ericson, Real-Time
+/// Collision Detection, 2005, section 5.1.5). A degenerate triangle is its vertices and edges.
 inline double distance2_to_triangle(Double3 p, Double3 a, Double3 b, Double3 c) {
     const Double3 ab = b - a, ac = c - a, ap = p - a;
     const double d1 = dot(ab, ap), d2 = dot(ac, ap);

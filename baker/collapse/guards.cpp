@@ -83,17 +83,22 @@ bool Guards::keeps_topology(const EdgeStar& star) {
     // ... nor an edge between two of them: both ends would make the same triangle of it.
     bool first_has = false, second_has = false;
     for (const EdgeStar::Wing& wing : star.wings)
-        if (stamps_[wing.a] == shared && stamps_[wing.b] == shared) (wing.at_first ? first_has : second_has) = true;
+        if (stamps_[wing.a] == shared && stamps_[wing.b] == shared)
+            (wing.at_first ? first_has : second_has) = true;
     return !(first_has && second_has);
 }
 
-bool Guards::keeps_shape(const EdgeStar& star, Double3 place, const std::vector<VertexHistory>& histories, const Strictness& strictness) const {
+bool Guards::keeps_shape(const EdgeStar& star, Double3 place, const std::vector<VertexHistory>& histories,
+                         const Strictness& strictness) const {
     if (star.wings.size() > strictness.max_valence) return false;
     const VertexHistory &su = histories[star.u], &sv = histories[star.v];
-    const Double3 own{double(su.normal[0]) + double(sv.normal[0]), double(su.normal[1]) + double(sv.normal[1]),
+    const Double3 own{double(su.normal[0]) + double(sv.normal[0]),
+                      double(su.normal[1]) + double(sv.normal[1]),
                       double(su.normal[2]) + double(sv.normal[2])};
     const auto opposes = [&](std::uint32_t v, Double3 n) {
-        return double(histories[v].normal[0]) * n.x + double(histories[v].normal[1]) * n.y + double(histories[v].normal[2]) * n.z < 0;
+        return double(histories[v].normal[0]) * n.x + double(histories[v].normal[1]) * n.y +
+                   double(histories[v].normal[2]) * n.z <
+               0;
     };
     const double cosine = strictness.min_normal_cosine, quality = strictness.min_quality;
     for (const EdgeStar::Wing& wing : star.wings) {
@@ -111,7 +116,9 @@ bool Guards::keeps_shape(const EdgeStar& star, Double3 place, const std::vector<
             const double edges_before = length2(wing.pa - apex) + length2(side) + length2(wing.pb - apex);
             if (after2 * edges_before * edges_before < before2 * edges * edges) return false;
         }
-        if (strictness.keep_orientation && (dot(own, after) < 0) + opposes(wing.a, after) + opposes(wing.b, after) >= 2) return false;
+        if (strictness.keep_orientation &&
+            (dot(own, after) < 0) + opposes(wing.a, after) + opposes(wing.b, after) >= 2)
+            return false;
     }
     return true;
 }

@@ -56,7 +56,8 @@ class Guards {
     /// The link condition, and what else collapsing the edge would do to the topology.
     bool keeps_topology(const EdgeStar& star);
     /// No triangle flips, folds over or becomes a sliver when the remaining vertex is put at `place`.
-    bool keeps_shape(const EdgeStar& star, Double3 place, const std::vector<VertexHistory>& histories, const Strictness& strictness) const;
+    bool keeps_shape(const EdgeStar& star, Double3 place, const std::vector<VertexHistory>& histories,
+                     const Strictness& strictness) const;
 
   private:
     const StarMesh& mesh_;

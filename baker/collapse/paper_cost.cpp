@@ -55,7 +55,9 @@ void PlaneQuadric::add(const PlaneQuadric& other) {
     area += other.area;
 }
 
-double PlaneQuadric::distance(Double3 x) const { return area > 0 ? std::sqrt(std::max(0.0, value(x)) / area) : 0; }
+double PlaneQuadric::distance(Double3 x) const {
+    return area > 0 ? std::sqrt(std::max(0.0, value(x)) / area) : 0;
+}
 
 PaperCost::PaperCost(const StarMesh& mesh) : quadrics_(mesh.vertex_count()) {
     for (std::uint32_t t = 0; t < mesh.triangle_count(); ++t) {
@@ -82,15 +84,19 @@ double PaperCost::cost_at(const EdgeStar& star, Double3 place, double weight_u, 
         if (!star.forward[i]) n = n * -1.0;
         on_edge.push_back(n);
     }
-    // The edge's triangles are at both ends, too; against themselves their smallest turn is 0, so they add nothing.
+    // The edge's triangles are at both ends, too; against themselves their smallest turn is 0, so they add
+    // nothing.
     constexpr double kLeastRegularity = 1e-3;
-    const double re = star.wings.empty() ? 1 : std::max(kLeastRegularity, regular / double(star.wings.size()));
+    const double re =
+        star.wings.empty() ? 1 : std::max(kLeastRegularity, regular / double(star.wings.size()));
     const double len = length(star.pv - star.pu);
     const double fu = len * edge_curvature(at_u, on_edge), fv = len * edge_curvature(at_v, on_edge);
-    return weight_u * (quadrics_[star.u].distance(place) / re + fu) + weight_v * (quadrics_[star.v].distance(place) / re + fv);
+    return weight_u * (quadrics_[star.u].distance(place) / re + fu) +
+           weight_v * (quadrics_[star.v].distance(place) / re + fv);
 }
 
-Candidate PaperCost::evaluate(const StarMesh&, const EdgeStar& star, Fold fold, Placement placement, double weight_u, double weight_v) const {
+Candidate PaperCost::evaluate(const StarMesh&, const EdgeStar& star, Fold fold, Placement placement,
+                              double weight_u, double weight_v) const {
     const auto at = [&](Double3 place) { return Candidate{place, cost_at(star, place, weight_u, weight_v)}; };
     if (fold == Fold::kIntoFirst) return at(star.pu);
     if (fold == Fold::kIntoSecond) return at(star.pv);

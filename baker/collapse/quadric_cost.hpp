@@ -1,14 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The vsplit authors
 // SPDX-License-Identifier: MIT
 //
-// Cost `quadric`: memoryless quadrics (Lindstrom and Turk, Fast and memory efficient polygonal simplification, 1998) relative to
-// their own vertex. Every plane and boundary line that counts for a vertex passes through it, so linear and constant parts
-// vanish, and with them the cancellation that plagues quadrics in single precision.
+// Cost `quadric`: memoryless quadrics (Lindstrom and Turk, Fast and memory efficient polygonal
+// simplification, 1998) relative to their own vertex. Every plane and boundary line that counts for a vertex
+// passes through it, so linear and constant parts vanish, and with them the cancellation that plagues
+// quadrics in single precision.
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <span>
 
 #include "star_mesh.hpp"
 #include "vsplit/bake/collapse.hpp"
@@ -16,13 +17,27 @@
 namespace vsplit::bake {
 
 /// Symmetric 3x3 matrix: xx xy xz yy yz zz.
-using Symmetric = std::array<double, 6>;
+template <class Real>
+struct SymmetricOf {
+    Real m[6]{};
+    VSPLIT_INLINE Real& operator[](std::size_t i) { return m[i]; }
+    VSPLIT_INLINE const Real& operator[](std::size_t i) const { return m[i]; }
+};
+using Symmetric = SymmetricOf<double>;
 
-inline Double3 times(const Symmetric& m, Double3 v) {
-    return {m[0] * v.x + m[1] * v.y + m[2] * v.z, m[1] * v.x + m[3] * v.y + m[4] * v.z, m[2] * v.x + m[4] * v.y + m[5] * v.z};
+template <class Real>
+VSPLIT_INLINE Vec3<Real> times(const SymmetricOf<Real>& m, Vec3<Real> v) {
+    return {m[0] * v.x + m[1] * v.y + m[2] * v.z, m[1] * v.x + m[3] * v.y + m[4] * v.z,
+            m[2] * v.x + m[4] * v.y + m[5] * v.z};
 }
-inline double form(const Symmetric& m, Double3 v) { return dot(v, times(m, v)); }
-inline double trace(const Symmetric& m) { return m[0] + m[3] + m[5]; }
+template <class Real>
+VSPLIT_INLINE Real form(const SymmetricOf<Real>& m, Vec3<Real> v) {
+    return dot(v, times(m, v));
+}
+template <class Real>
+VSPLIT_INLINE Real trace(const SymmetricOf<Real>& m) {
+    return m[0] + m[3] + m[5];
+}
 
 /// A placed collapse and its cost.
 struct Candidate {
@@ -30,99 +45,129 @@ struct Candidate {
     double cost = 0;
 };
 
-/// Solves m x = b for a symmetric positive definite m by LDLT; false if a pivot is not positive.
-inline bool solve(const Symmetric& m, Double3 b, Double3& x) {
-    const double d0 = m[0];
-    if (!(d0 > 0)) return false;
-    const double l10 = m[1] / d0, l20 = m[2] / d0;
-    const double d1 = m[3] - l10 * m[1];
-    if (!(d1 > 0)) return false;
-    const double e = m[4] - l20 * m[1];
-    const double l21 = e / d1;
-    const double d2 = m[5] - l20 * m[2] - l21 * e;
-    if (!(d2 > 0)) return false;
-    const double y1 = b.y - l10 * b.x;
-    const double y2 = b.z - l20 * b.x - l21 * y1;
+/// Solves m x = b for a symmetric positive definite m by LDLT; false (where it is so) if a pivot is not
+/// positive.
+template <class Real>
+VSPLIT_INLINE auto solve(const SymmetricOf<Real>& m, Vec3<Real> b, Vec3<Real>& x) {
+    const Real r0 = 1.0 / m[0];
+    const Real l10 = m[1] * r0, l20 = m[2] * r0;
+    const Real d1 = m[3] - l10 * m[1], e = m[4] - l20 * m[1];
+    const Real r1 = 1.0 / d1;
+    const Real l21 = e * r1;
+    const Real d2 = m[5] - l20 * m[2] - l21 * e;
+    const Real y1 = b.y - l10 * b.x;
+    const Real y2 = b.z - l20 * b.x - l21 * y1;
     x.z = y2 / d2;
-    x.y = y1 / d1 - l21 * x.z;
-    x.x = b.x / d0 - l10 * x.y - l20 * x.z;
-    return true;
+    x.y = y1 * r1 - l21 * x.z;
+    x.x = b.x * r0 - l10 * x.y - l20 * x.z;
+    return (m[0] > 0.0) & (d1 > 0.0) & (d2 > 0.0);
 }
 
-inline Symmetric widen(const float (&q)[6], double weight) {
-    return {q[0] * weight, q[1] * weight, q[2] * weight, q[3] * weight, q[4] * weight, q[5] * weight};
+/// What a vertex, or each of four, brings to the price of its edges; wider than in Vertex.
+template <class Real>
+struct Shape {
+    Vec3<Real> position;
+    Real weight;
+    SymmetricOf<Real> quadric;
+    Vec3<Real> area;
+    Real size;
+};
+
+inline Shape<double> shape_of(const StarMesh& mesh, std::uint32_t v) {
+    const Vertex& of = mesh.vertex(v);
+    Shape<double> shape{mesh.position(v), of.weight, {}, {of.area[0], of.area[1], of.area[2]}, of.size};
+    std::copy_n(of.quadric, 6, shape.quadric.m);
+    return shape;
 }
 
-/// The quadrics of an edge's two ends together: cost and best place of folding it. Costs are a length to the fifth power: area^1.5 times squared
-/// distance. (Area alone, as Garland and Heckbert weigh, or squared, as Lindstrom and Turk do, both measured worse:
+/// The quadrics of an edge's two ends together: cost and best place of folding it, of one edge or of four at
+/// once. Costs are a length to the fifth power: area^1.5 times squared distance. (Area alone, as Garland and
+/// Heckbert weigh, or squared, as Lindstrom and Turk do, both measured worse:
 /// docs/decisions/0003-collapse-engine.md.)
+template <class Real>
 class EdgeQuadric {
   public:
-    EdgeQuadric(Double3 u, Double3 v, const VertexShape& su, const VertexShape& sv, const CollapseOptions& options)
-        : middle_((u + v) * 0.5), half_((v - u) * 0.5), regularisation_(options.regularisation) {
-        const double wu = su.weight, wv = sv.weight;
-        Symmetric difference;
+    VSPLIT_INLINE EdgeQuadric(const Shape<Real>& u, const Shape<Real>& v, const CollapseOptions& options)
+        : middle_((u.position + v.position) * 0.5), half_((v.position - u.position) * 0.5) {
+        SymmetricOf<Real> difference;
         for (std::size_t i = 0; i < 6; ++i) {
-            const double a = wu * double(su.quadric[i]), b = wv * double(sv.quadric[i]);
+            const Real a = u.weight * u.quadric[i], b = v.weight * v.quadric[i];
             sum_[i] = a + b;
             difference[i] = b - a;
         }
-        // Keeping the volume: (gu + gv) (x - middle) = (gv - gu) half, softly (Lindstrom and Turk 1998, section 4.1).
-        const Double3 gu{su.area[0], su.area[1], su.area[2]}, gv{sv.area[0], sv.area[1], sv.area[2]};
-        volume_ = gu + gv;
-        const double size = double(su.size) + double(sv.size);
-        volume_scale_ = size > 0 ? options.volume_weight * 0.5 * (wu + wv) / std::sqrt(size) : 0;
-        volume_rhs_ = dot(gv - gu, half_);
+        trace_ = trace(sum_);
+        pull_ = options.regularisation * trace_ + 1e-30;
+        // Keeping the volume: (gu + gv) (x - middle) = (gv - gu) half, softly (Lindstrom and Turk 1998,
+        // section 4.1).
+        volume_ = u.area + v.area;
+        const Real size = u.size + v.size;
+        volume_scale_ = select(
+            size > 0.0, options.volume_weight * 0.5 * (u.weight + v.weight) / square_root(size), size * 0.0);
+        volume_rhs_ = dot(v.area - u.area, half_);
         // cost(x) = xT sum x - 2 rhs x + constant, about the middle
         rhs_ = times(difference, half_) + volume_ * (volume_scale_ * volume_rhs_);
         constant_ = form(sum_, half_) + volume_scale_ * volume_rhs_ * volume_rhs_;
     }
 
-    /// Of folding to x, relative to the middle of the edge, which runs from -half to half.
-    double cost(Double3 x) const {
-        const double moved = dot(volume_, x);
-        return form(sum_, x) + volume_scale_ * moved * moved - 2 * dot(rhs_, x) + constant_;
-    }
+    /// A place relative to the middle of the edge, which runs from -half to half.
+    struct Placed {
+        Vec3<Real> place;
+        Real cost;
+    };
 
-    Candidate best() const {
-        Symmetric m = sum_;
-        const Double3 scaled = volume_ * volume_scale_;
-        m[0] += scaled.x * volume_.x;
+    /// Where the cost is least; if that is nowhere near, the best of the ends and the middle.
+    VSPLIT_INLINE Placed best() const {
+        SymmetricOf<Real> m = sum_;
+        const Vec3<Real> scaled = volume_ * volume_scale_;
+        m[0] += scaled.x * volume_.x + pull_;
         m[1] += scaled.x * volume_.y;
         m[2] += scaled.x * volume_.z;
-        m[3] += scaled.y * volume_.y;
+        m[3] += scaled.y * volume_.y + pull_;
         m[4] += scaled.y * volume_.z;
-        m[5] += scaled.z * volume_.z;
-        const double pull = regularisation_ * trace(sum_) + 1e-30;
-        m[0] += pull;
-        m[3] += pull;
-        m[5] += pull;
-        Double3 x;
-        if (!solve(m, rhs_, x) || !(length2(x) <= 16 * length2(half_))) return endpoint(true);
+        m[5] += scaled.z * volume_.z + pull_;
+        Vec3<Real> x;
+        const auto solved = solve(m, rhs_, x);
+        const auto near = solved & (length2(x) <= 16.0 * length2(half_));
+        Placed end = better_end();
+        const auto between = constant_ <= end.cost;
+        const Real zero = constant_ * 0.0;
+        end = {select(between, Vec3<Real>{zero, zero, zero}, end.place),
+               select(between, constant_, end.cost)};
         // At the minimum xT m x = rhs x; the pull is no part of the cost.
-        return {middle_ + x, constant_ - dot(rhs_, x) - pull * length2(x)};
+        return {select(near, x, end.place),
+                select(near, constant_ - dot(rhs_, x) - pull_ * length2(x), end.cost)};
     }
 
-    Candidate first() const { return {middle_ - half_, cost(half_ * -1.0)}; }
-    Candidate second() const { return {middle_ + half_, cost(half_)}; }
-    Candidate endpoint(bool or_middle) const {
-        Candidate best = first();
-        if (const Candidate other = second(); other.cost < best.cost) best = other;
-        if (or_middle && constant_ <= best.cost) best = {middle_, constant_};
-        return best;
+    /// At the end of `side`, -1 or 1.
+    VSPLIT_INLINE Placed end(double side) const {
+        const Real moved = dot(volume_, half_);
+        const Real even = form(sum_, half_) + volume_scale_ * moved * moved + constant_;
+        return {half_ * (0.0 * even + side), even - side * 2.0 * dot(rhs_, half_)};
+    }
+    VSPLIT_INLINE Placed better_end() const {
+        const Placed first = end(-1), second = end(1);
+        const auto is_second = second.cost < first.cost;
+        return {select(is_second, second.place, first.place), select(is_second, second.cost, first.cost)};
     }
 
-    /// Prefers short edges where everything else is free.
-    double tie_break() const {
-        const double edge2 = 4 * length2(half_);
-        return 1e-14 * edge2 * (std::sqrt(edge2) * edge2 + trace(sum_));
+    VSPLIT_INLINE Vec3<Real> middle() const { return middle_; }
+
+    /// The cost in the queue: never negative, and among the free ones short edges come first.
+    VSPLIT_INLINE Real price(Real cost) const {
+        const Real edge2 = length2(half_);
+        return select(cost > 0.0, cost, cost * 0.0) + edge2 * (4e-14 * trace_ + 1e-34);
     }
 
   private:
-    Symmetric sum_;
-    Double3 middle_, half_, volume_, rhs_;
-    double volume_rhs_ = 0, volume_scale_ = 0, constant_ = 0, regularisation_;
+    SymmetricOf<Real> sum_;
+    Vec3<Real> middle_, half_, volume_, rhs_;
+    Real volume_rhs_, volume_scale_, constant_, trace_, pull_;
 };
+
+/// Prices the edges from `u` to each of `others`, optimally placed: the same as EdgeQuadric<double>, four at
+/// a time.
+void price_edges(const StarMesh& mesh, std::uint32_t u, std::span<const std::uint32_t> others,
+                 const CollapseOptions& options, float* prices);
 
 /// A triangle's part of the shapes of its corners.
 struct TrianglePart {
@@ -136,7 +181,7 @@ struct TrianglePart {
 };
 
 /// Adds (sign 1) or takes away (-1) a triangle's part.
-inline void add_triangle(VertexShape& shape, const TrianglePart& part, double sign) {
+inline void add_triangle(Vertex& shape, const TrianglePart& part, double sign) {
     const double s = sign * part.scale;
     const Double3 n = part.n2;
     shape.quadric[0] += float(s * n.x * n.x);
@@ -151,9 +196,9 @@ inline void add_triangle(VertexShape& shape, const TrianglePart& part, double si
     shape.size += float(sign * part.size);
 }
 
-/// Adds a boundary edge's part: its length to the third power times the squared distance to its line (after Lindstrom and Turk 1998,
-/// section 4.2, in the dimension of the triangles' parts).
-inline void add_boundary(VertexShape& shape, Double3 edge, double boundary_weight) {
+/// Adds a boundary edge's part: its length to the third power times the squared distance to its line (after
+/// Lindstrom and Turk 1998, section 4.2, in the dimension of the triangles' parts).
+inline void add_boundary(Vertex& shape, Double3 edge, double boundary_weight) {
     const double e2 = length2(edge), weight = boundary_weight * std::sqrt(e2);
     shape.quadric[0] += float(weight * (e2 - edge.x * edge.x));
     shape.quadric[1] -= float(weight * edge.x * edge.y);
@@ -164,12 +209,14 @@ inline void add_boundary(VertexShape& shape, Double3 edge, double boundary_weigh
 }
 
 /// The shape from scratch; the weight stays.
-inline void rebuild_shape(StarMesh& mesh, std::uint32_t v, double boundary_weight, std::vector<Neighbour>& scratch) {
-    VertexShape& shape = mesh.shape(v);
+inline void rebuild_shape(StarMesh& mesh, std::uint32_t v, double boundary_weight,
+                          std::vector<Neighbour>& scratch) {
+    Vertex& shape = mesh.vertex(v);
     for (float& q : shape.quadric) q = 0;
     for (float& a : shape.area) a = 0;
     shape.size = 0;
-    for (const std::uint32_t t : mesh.star(v)) add_triangle(shape, TrianglePart(mesh.normal(mesh.triangle(t))), 1);
+    for (const std::uint32_t t : mesh.star(v))
+        add_triangle(shape, TrianglePart(mesh.normal(mesh.triangle(t))), 1);
     if (mesh.kind(v) == VertexKind::kInner) return;
     neighbours_of(mesh, v, scratch);
     const Double3 p = mesh.position(v);

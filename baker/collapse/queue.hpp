@@ -11,9 +11,9 @@
 
 namespace vsplit::bake {
 
-/// Each item is in at most one bucket; pushing it again moves it. Within a bucket (a cost range of a quarter octave) items come in order of
-/// their number, which runs along a Morton curve, so that work stays in the cache. Measured against a 4-ary heap: PROTOTYPES
-/// in docs/decisions/0003-collapse-engine.md.
+/// Each item is in at most one bucket; pushing it again moves it. Within a bucket (a cost range of a quarter
+/// octave) items come in order of their number, which runs along a Morton curve, so that work stays in the
+/// cache. Measured against a 4-ary heap: PROTOTYPES in docs/decisions/0003-collapse-engine.md.
 class BucketQueue {
   public:
     using Bucket = std::uint16_t;
@@ -24,7 +24,8 @@ class BucketQueue {
     /// Costs are >= 0; an infinite or NaN cost has the last bucket.
     static Bucket bucket_of(float cost) {
         if (!(cost > 0)) return 0;
-        return static_cast<Bucket>(std::min<std::uint32_t>(std::bit_cast<std::uint32_t>(cost) >> 21, kBuckets - 1));
+        return static_cast<Bucket>(
+            std::min<std::uint32_t>(std::bit_cast<std::uint32_t>(cost) >> 21, kBuckets - 1));
     }
 
     void push(std::uint32_t item, Bucket bucket) {
@@ -36,7 +37,8 @@ class BucketQueue {
     void remove(std::uint32_t item) { slots_[item] = kNone; }
     bool contains(std::uint32_t item) const { return slots_[item] != kNone; }
 
-    /// Takes the cheapest bucket's items in order: false when nothing is left. An item is out of the queue once taken.
+    /// Takes the cheapest bucket's items in order: false when nothing is left. An item is out of the queue
+    /// once taken.
     bool pop(std::uint32_t& item, Bucket& bucket) {
         for (;;) {
             while (next_ < snapshot_.size()) {
@@ -62,7 +64,8 @@ class BucketQueue {
     }
 
   private:
-    static constexpr std::uint32_t kBuckets = 1024;  // the sign-free upper 11 bits of a float: exponent and two bits of mantissa
+    static constexpr std::uint32_t kBuckets =
+        1024;  // the sign-free upper 11 bits of a float: exponent and two bits of mantissa
 
     std::vector<Bucket> slots_;
     std::vector<std::vector<std::uint32_t>> buckets_;

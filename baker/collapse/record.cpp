@@ -7,21 +7,30 @@
 
 namespace vsplit::bake {
 
-void Record::add(std::uint32_t child, std::uint32_t parent, const Float3& parent_position, float parent_weight, float error) {
-    steps_.push_back({child, parent, std::uint32_t(corners_changed.size()), std::uint32_t(removed.size()), parent_position, error});
+void Record::add(std::uint32_t child, std::uint32_t parent, const Float3& parent_position,
+                 float parent_weight, float error) {
+    steps_.push_back({child, parent, std::uint32_t(corners_changed.size()), std::uint32_t(removed.size()),
+                      parent_position, error});
     if (has_weights_) parent_weights_.push_back(parent_weight);
 }
 
 void Record::add_vanished(const std::vector<std::uint32_t>& vertices, float error) {
     vanished_begins_.push_back(std::uint32_t(vanished_.size()));
     vanished_.insert(vanished_.end(), vertices.begin(), vertices.end());
-    steps_.push_back({kNoVertex, kNoVertex, std::uint32_t(corners_changed.size()), std::uint32_t(removed.size()), {}, error});
+    steps_.push_back({kNoVertex,
+                      kNoVertex,
+                      std::uint32_t(corners_changed.size()),
+                      std::uint32_t(removed.size()),
+                      {},
+                      error});
     if (has_weights_) parent_weights_.push_back(1);
 }
 
-ProgressiveMesh Record::finish(const StarMesh& mesh, const std::vector<float>& weights, std::vector<std::uint32_t>* births) {
+ProgressiveMesh Record::finish(const StarMesh& mesh, const std::vector<float>& weights,
+                               std::vector<std::uint32_t>* births) {
     ProgressiveMesh out;
-    std::vector<std::uint32_t> vertex_birth(mesh.vertex_count(), kNoVertex), triangle_birth(mesh.triangle_count(), kNoVertex);
+    std::vector<std::uint32_t> vertex_birth(mesh.vertex_count(), kNoVertex),
+        triangle_birth(mesh.triangle_count(), kNoVertex);
     std::vector<std::uint32_t> order;  // StarMesh vertex of each birth
     std::size_t total_vertices = mesh.live_vertices();
     std::uint32_t vanished_end = std::uint32_t(vanished_.size());
@@ -69,14 +78,16 @@ ProgressiveMesh Record::finish(const StarMesh& mesh, const std::vector<float>& w
             out.moves.push_back({parent, step.parent_position, has_weights_ ? parent_weights_[i] : 1.0f});
             for (std::uint32_t j = corners_begin; j < step.corners_end; ++j) {
                 const std::uint32_t corner = corners_changed[j];
-                out.corner_changes.push_back({3 * triangle_birth[corner / 3] + corner % 3, vertex_birth[step.child]});
+                out.corner_changes.push_back(
+                    {3 * triangle_birth[corner / 3] + corner % 3, vertex_birth[step.child]});
             }
             std::sort(out.corner_changes.end() - (step.corners_end - corners_begin), out.corner_changes.end(),
                       [](const CornerChange& a, const CornerChange& b) { return a.corner < b.corner; });
         }
         for (std::uint32_t j = removed_begin; j < step.removed_end; ++j) bear_triangle(removed[j]);
         out.splits.push_back({std::uint32_t(order.size()), std::uint32_t(out.triangles.size()),
-                              std::uint32_t(out.corner_changes.size()), std::uint32_t(out.moves.size()), step.error});
+                              std::uint32_t(out.corner_changes.size()), std::uint32_t(out.moves.size()),
+                              step.error});
     }
     std::vector<Step>().swap(steps_);
     std::vector<std::uint32_t>().swap(corners_changed);
@@ -98,7 +109,8 @@ ProgressiveMesh Record::finish(const StarMesh& mesh, const std::vector<float>& w
     for (Split& split : out.splits) {
         for (; from < split.moves_end; ++from) {
             const VertexMove move = out.moves[from];
-            const bool same = std::memcmp(&place[move.vertex], &move.position, sizeof(Float3)) == 0 && (!has_weights_ || weight[move.vertex] == move.weight);
+            const bool same = std::memcmp(&place[move.vertex], &move.position, sizeof(Float3)) == 0 &&
+                              (!has_weights_ || weight[move.vertex] == move.weight);
             place[move.vertex] = move.position;
             if (has_weights_) weight[move.vertex] = move.weight;
             if (!same) out.moves[kept++] = move;

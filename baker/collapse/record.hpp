@@ -17,9 +17,10 @@ class Record {
   public:
     explicit Record(bool has_weights) : has_weights_(has_weights) {}
 
-    /// `child` folded into `parent`, which was at `parent_position` with `parent_weight`; ranges of the two lists that
-    /// StarMesh::fold() appended to end here. The child keeps position and weight in the mesh.
-    void add(std::uint32_t child, std::uint32_t parent, const Float3& parent_position, float parent_weight, float error);
+    /// `child` folded into `parent`, which was at `parent_position` with `parent_weight`; ranges of the two
+    /// lists that StarMesh::fold() appended to end here. The child keeps position and weight in the mesh.
+    void add(std::uint32_t child, std::uint32_t parent, const Float3& parent_position, float parent_weight,
+             float error);
     /// A component went: `vertices` and (in `removed`) its triangles.
     void add_vanished(const std::vector<std::uint32_t>& vertices, float error);
 
@@ -28,13 +29,15 @@ class Record {
 
     std::size_t size() const { return steps_.size(); }
 
-    /// Reverses the record: births in the order of the splits. `weights` are the current ones of all vertices (empty: none),
-    /// the dead ones' as they were when they went. `births`, if given, receives the StarMesh vertex of each vertex. Consumes the record.
-    ProgressiveMesh finish(const StarMesh& mesh, const std::vector<float>& weights, std::vector<std::uint32_t>* births);
+    /// Reverses the record: births in the order of the splits. `weights` are the current ones of all vertices
+    /// (empty: none), the dead ones' as they were when they went. `births`, if given, receives the StarMesh
+    /// vertex of each vertex. Consumes the record.
+    ProgressiveMesh finish(const StarMesh& mesh, const std::vector<float>& weights,
+                           std::vector<std::uint32_t>* births);
 
   private:
     struct Step {
-        std::uint32_t child;   ///< Or kNoVertex: a component vanished.
+        std::uint32_t child;  ///< Or kNoVertex: a component vanished.
         std::uint32_t parent;
         std::uint32_t corners_end;
         std::uint32_t removed_end;

@@ -23,9 +23,10 @@ std::uint64_t spread(std::uint64_t x) {
 
 template <class Body>
 void parallel(std::size_t count, const Body& body) {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 4096), [&](const tbb::blocked_range<std::size_t>& range) {
-        for (std::size_t i = range.begin(); i < range.end(); ++i) body(i);
-    });
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 4096),
+                      [&](const tbb::blocked_range<std::size_t>& range) {
+                          for (std::size_t i = range.begin(); i < range.end(); ++i) body(i);
+                      });
 }
 
 std::uint32_t find_root(std::vector<std::uint32_t>& roots, std::uint32_t i) {
@@ -55,8 +56,11 @@ StarMesh::StarMesh(const Mesh& mesh) {
     std::vector<std::pair<std::uint64_t, std::uint32_t>> order(vertices);
     parallel(vertices, [&](std::size_t i) {
         const Double3 p = work(mesh.positions[i]);
-        const auto quantised = [](double c) { return static_cast<std::uint64_t>(std::clamp((c + 1) * 0x100000, 0.0, 2097151.0)); };
-        order[i] = {spread(quantised(p.x)) | spread(quantised(p.y)) << 1 | spread(quantised(p.z)) << 2, std::uint32_t(i)};
+        const auto quantised = [](double c) {
+            return static_cast<std::uint64_t>(std::clamp((c + 1) * 0x100000, 0.0, 2097151.0));
+        };
+        order[i] = {spread(quantised(p.x)) | spread(quantised(p.y)) << 1 | spread(quantised(p.z)) << 2,
+                    std::uint32_t(i)};
     });
     tbb::parallel_sort(order.begin(), order.end());
     input_vertices_.resize(vertices);
@@ -71,11 +75,14 @@ StarMesh::StarMesh(const Mesh& mesh) {
 
     // Triangles by their first vertex on the curve: a counting sort, stable.
     std::vector<std::uint32_t> place(vertices + 1, 0);
-    const auto first_of = [&](const Triangle& t) { return std::min({renumbered[t[0]], renumbered[t[1]], renumbered[t[2]]}); };
+    const auto first_of = [&](const Triangle& t) {
+        return std::min({renumbered[t[0]], renumbered[t[1]], renumbered[t[2]]});
+    };
     for (const Triangle& t : mesh.triangles) ++place[first_of(t) + 1];
     std::partial_sum(place.begin(), place.end(), place.begin());
     triangles_.resize(mesh.triangles.size());
-    for (const Triangle& t : mesh.triangles) triangles_[place[first_of(t)]++] = {renumbered[t[0]], renumbered[t[1]], renumbered[t[2]]};
+    for (const Triangle& t : mesh.triangles)
+        triangles_[place[first_of(t)]++] = {renumbered[t[0]], renumbered[t[1]], renumbered[t[2]]};
 
     for (const Triangle& t : triangles_)
         for (const std::uint32_t v : t) ++vertices_[v].star_size;
@@ -85,11 +92,13 @@ StarMesh::StarMesh(const Mesh& mesh) {
         begin += v.star_size;
         v.star_size = 0;
     }
-    // Stars that outgrow their place move to the end; a fold adds what it takes away elsewhere, so this is ample.
+    // Stars that outgrow their place move to the end; a fold adds what it takes away elsewhere, so this is
+    // ample.
     arena_.reserve(std::size_t{begin} + begin / 2);
     arena_.resize(begin);
     for (std::uint32_t t = 0; t < triangles_.size(); ++t)
-        for (const std::uint32_t v : triangles_[t]) arena_[vertices_[v].star_begin + vertices_[v].star_size++] = t;
+        for (const std::uint32_t v : triangles_[t])
+            arena_[vertices_[v].star_begin + vertices_[v].star_size++] = t;
 
     live_triangles_ = triangle_count();
     live_vertices_ = 0;
@@ -98,49 +107,59 @@ StarMesh::StarMesh(const Mesh& mesh) {
 
 void StarMesh::classify() {
     kinds_.assign(vertex_count(), VertexKind::kFixed);
-    tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, vertex_count(), 4096), [&](const tbb::blocked_range<std::uint32_t>& range) {
-        std::vector<Neighbour> ring;
-        std::vector<std::uint32_t> roots;
-        for (std::uint32_t v = range.begin(); v < range.end(); ++v) {
-            if (vertices_[v].star_size == 0) {
-                kinds_[v] = VertexKind::kDead;
-                continue;
-            }
-            neighbours_of(*this, v, ring);
-            std::size_t special = 0;
-            const Neighbour* curve[2] = {};
-            for (const Neighbour& n : ring)
-                if (n.special()) {
-                    if (special < 2) curve[special] = &n;
-                    ++special;
+    tbb::parallel_for(
+        tbb::blocked_range<std::uint32_t>(0, vertex_count(), 4096),
+        [&](const tbb::blocked_range<std::uint32_t>& range) {
+            std::vector<Neighbour> ring;
+            std::vector<std::uint32_t> roots;
+            for (std::uint32_t v = range.begin(); v < range.end(); ++v) {
+                if (vertices_[v].star_size == 0) {
+                    kinds_[v] = VertexKind::kDead;
+                    continue;
                 }
-            if (special != 0 && special != 2) continue;
-            if (special == 2) {
-                const int a = curve[0]->out + curve[0]->in, b = curve[1]->out + curve[1]->in;
-                if (a != b) continue;
+                neighbours_of(*this, v, ring);
+                std::size_t special = 0;
+                const Neighbour* curve[2] = {};
+                for (const Neighbour& n : ring)
+                    if (n.special()) {
+                        if (special < 2) curve[special] = &n;
+                        ++special;
+                    }
+                if (special != 0 && special != 2) continue;
+                if (special == 2) {
+                    const int a = curve[0]->out + curve[0]->in, b = curve[1]->out + curve[1]->in;
+                    if (a != b) continue;
+                }
+                // The link must hang together: otherwise several fans meet in this one point.
+                roots.resize(ring.size());
+                std::iota(roots.begin(), roots.end(), 0u);
+                const bool sorted = vertices_[v].star_size > kLargeStar;
+                const auto index_of = [&](std::uint32_t w) {
+                    if (sorted)
+                        return std::uint32_t(std::lower_bound(ring.begin(), ring.end(), w,
+                                                              [](const Neighbour& n, std::uint32_t x) {
+                                                                  return n.vertex < x;
+                                                              }) -
+                                             ring.begin());
+                    return std::uint32_t(std::find_if(ring.begin(), ring.end(),
+                                                      [&](const Neighbour& n) { return n.vertex == w; }) -
+                                         ring.begin());
+                };
+                for (const std::uint32_t t : star(v)) {
+                    std::uint32_t ends[2];
+                    int n = 0;
+                    for (const std::uint32_t w : triangles_[t])
+                        if (w != v) ends[n++] = index_of(w);
+                    roots[find_root(roots, ends[0])] = find_root(roots, ends[1]);
+                }
+                bool connected = true;
+                for (std::uint32_t i = 1; i < ring.size(); ++i)
+                    connected &= find_root(roots, i) == find_root(roots, 0);
+                if (connected) kinds_[v] = special == 0 ? VertexKind::kInner : VertexKind::kCurve;
             }
-            // The link must hang together: otherwise several fans meet in this one point.
-            roots.resize(ring.size());
-            std::iota(roots.begin(), roots.end(), 0u);
-            const bool sorted = vertices_[v].star_size > kLargeStar;
-            const auto index_of = [&](std::uint32_t w) {
-                if (sorted)
-                    return std::uint32_t(std::lower_bound(ring.begin(), ring.end(), w, [](const Neighbour& n, std::uint32_t x) { return n.vertex < x; }) - ring.begin());
-                return std::uint32_t(std::find_if(ring.begin(), ring.end(), [&](const Neighbour& n) { return n.vertex == w; }) - ring.begin());
-            };
-            for (const std::uint32_t t : star(v)) {
-                std::uint32_t ends[2];
-                int n = 0;
-                for (const std::uint32_t w : triangles_[t])
-                    if (w != v) ends[n++] = index_of(w);
-                roots[find_root(roots, ends[0])] = find_root(roots, ends[1]);
-            }
-            bool connected = true;
-            for (std::uint32_t i = 1; i < ring.size(); ++i) connected &= find_root(roots, i) == find_root(roots, 0);
-            if (connected) kinds_[v] = special == 0 ? VertexKind::kInner : VertexKind::kCurve;
-        }
-    });
-    live_vertices_ = static_cast<std::uint32_t>(std::count_if(kinds_.begin(), kinds_.end(), [](VertexKind k) { return k != VertexKind::kDead; }));
+        });
+    live_vertices_ = static_cast<std::uint32_t>(
+        std::count_if(kinds_.begin(), kinds_.end(), [](VertexKind k) { return k != VertexKind::kDead; }));
 }
 
 void StarMesh::fold(std::uint32_t child, std::uint32_t parent, std::vector<std::uint32_t>& corners_changed,
@@ -151,8 +170,10 @@ void StarMesh::fold(std::uint32_t child, std::uint32_t parent, std::vector<std::
     };
     std::uint32_t kept = 0;
     for (const std::uint32_t t : star(child))
-        if (has(t, parent)) removed.push_back(t);
-        else ++kept;
+        if (has(t, parent))
+            removed.push_back(t);
+        else
+            ++kept;
     const auto gone = std::span(removed).subspan(first_removed);
 
     // The parent's star without the removed triangles, then the child's; in place if it fits.
@@ -213,7 +234,8 @@ void neighbours_of(const StarMesh& mesh, std::uint32_t v, std::vector<Neighbour>
             out.push_back({c[(k + 1) % 3], 1, 0});
             out.push_back({c[(k + 2) % 3], 0, 1});
         }
-        std::sort(out.begin(), out.end(), [](const Neighbour& a, const Neighbour& b) { return a.vertex < b.vertex; });
+        std::sort(out.begin(), out.end(),
+                  [](const Neighbour& a, const Neighbour& b) { return a.vertex < b.vertex; });
         std::size_t n = 0;
         for (std::size_t i = 1; i < out.size(); ++i) {
             if (out[i].vertex == out[n].vertex) {

@@ -14,16 +14,19 @@
 
 namespace vsplit::bake {
 
-/// How a vertex may collapse, after Dey, Edelsbrunner, Guha and Nekhayev, Topology preserving edge contraction (1999), section 3.
+/// How a vertex may collapse, after Dey, Edelsbrunner, Guha and Nekhayev, Topology preserving edge
+/// contraction (1999), section 3.
 enum class VertexKind : std::uint8_t {
     kInner,  ///< One closed fan of triangles: may fold into any neighbour.
-    kCurve,  ///< On exactly two special edges of one kind (a boundary, a non-manifold crease): folds along them only.
+    kCurve,  ///< On exactly two special edges of one kind (a boundary, a non-manifold crease): folds along
+             ///< them only.
     kFixed,  ///< Anything else, or locked: stays where it is; others may fold into it.
     kDead,   ///< Collapsed.
 };
 
 /// Vertices and triangles are numbered along a Morton curve, so that neighbours share cache lines.
-/// Positions stay the input's floats; working coordinates are exact differences to the centre, times a power of two.
+/// Positions stay the input's floats; working coordinates are exact differences to the centre, times a power
+/// of two.
 class StarMesh {
   public:
     explicit StarMesh(const Mesh& mesh);
@@ -37,12 +40,17 @@ class StarMesh {
     void set_raw_position(std::uint32_t v, const Float3& p) { vertices_[v].position = p; }
     Double3 position(std::uint32_t v) const { return work(vertices_[v].position); }
     Double3 work(const Float3& p) const {
-        return {(double(p.x) - centre_.x) * scale_, (double(p.y) - centre_.y) * scale_, (double(p.z) - centre_.z) * scale_};
+        return {(double(p.x) - centre_.x) * scale_, (double(p.y) - centre_.y) * scale_,
+                (double(p.z) - centre_.z) * scale_};
+    }
+    VSPLIT_INLINE Lanes3 work(const Lanes (&p)[4]) const {
+        return {(p[0] - centre_.x) * scale_, (p[1] - centre_.y) * scale_, (p[2] - centre_.z) * scale_};
     }
     /// The float position nearest to a working position.
     Float3 round(Double3 p) const {
         const double inverse = 1 / scale_;
-        return {float(p.x * inverse + centre_.x), float(p.y * inverse + centre_.y), float(p.z * inverse + centre_.z)};
+        return {float(p.x * inverse + centre_.x), float(p.y * inverse + centre_.y),
+                float(p.z * inverse + centre_.z)};
     }
     /// Working units per object unit, a power of two.
     double scale() const { return scale_; }
@@ -52,8 +60,8 @@ class StarMesh {
     std::span<const std::uint32_t> star(std::uint32_t v) const {
         return {arena_.data() + vertices_[v].star_begin, vertices_[v].star_size};
     }
-    const VertexShape& shape(std::uint32_t v) const { return vertices_[v].shape; }
-    VertexShape& shape(std::uint32_t v) { return vertices_[v].shape; }
+    const Vertex& vertex(std::uint32_t v) const { return vertices_[v]; }
+    Vertex& vertex(std::uint32_t v) { return vertices_[v]; }
     VertexKind kind(std::uint32_t v) const { return kinds_[v]; }
     void fix(std::uint32_t v) { kinds_[v] = VertexKind::kFixed; }
 
@@ -74,8 +82,8 @@ class StarMesh {
         return cross(position(t[1]) - a, position(t[2]) - a);
     }
 
-    /// Folds `child` into `parent`: triangles with both go, the child's others get the parent as corner (appended to
-    /// `corners_changed` as 3 * triangle + corner), removed ones are appended to `removed`.
+    /// Folds `child` into `parent`: triangles with both go, the child's others get the parent as corner
+    /// (appended to `corners_changed` as 3 * triangle + corner), removed ones are appended to `removed`.
     void fold(std::uint32_t child, std::uint32_t parent, std::vector<std::uint32_t>& corners_changed,
               std::vector<std::uint32_t>& removed);
     /// Takes out a whole component: its triangles and vertices.
@@ -107,7 +115,8 @@ struct Neighbour {
 /// Stars above this size are searched by sorting.
 inline constexpr std::size_t kLargeStar = 64;
 
-/// Collects the neighbours of `v` into `out`: in order of first appearance, or by number if the star is larger than kLargeStar.
+/// Collects the neighbours of `v` into `out`: in order of first appearance, or by number if the star is
+/// larger than kLargeStar.
 void neighbours_of(const StarMesh& mesh, std::uint32_t v, std::vector<Neighbour>& out);
 
 }  // namespace vsplit::bake
