@@ -161,7 +161,7 @@ double TriangleTree::distance2(std::uint32_t slot, Double3 p) const {
     return distance2_to_triangle(p, to_double(t[0]), to_double(t[1]), to_double(t[2]));
 }
 
-TriangleTree::Hit TriangleTree::closest(Double3 point, std::uint32_t guess) const {
+TriangleTree::Hit TriangleTree::closest(Double3 point, std::uint32_t guess, double enough2) const {
     struct Entry {
         std::uint32_t node;
         double distance2;
@@ -171,7 +171,7 @@ TriangleTree::Hit TriangleTree::closest(Double3 point, std::uint32_t guess) cons
     std::uint32_t slot = guess < triangles_.size() ? guess : 0;
     double best = distance2(slot, point);
     stack[size++] = {0, box_distance2(nodes_[0], point)};
-    while (size) {
+    while (size && best > enough2) {
         const Entry entry = stack[--size];
         if (entry.distance2 >= best) continue;
         const Node& node = nodes_[entry.node];
