@@ -11,8 +11,6 @@
 #include <limits>
 #include <numbers>
 
-#include "distance.hpp"
-
 namespace vsplit::bake {
 namespace {
 
@@ -25,9 +23,6 @@ double seconds_now() {
 
 Float3 to_float(Double3 p) {
     return {float(p.x), float(p.y), float(p.z)};
-}
-Double3 to_double(Float3 p) {
-    return {p.x, p.y, p.z};
 }
 
 std::uint32_t nearer_end(const EdgeStar& star, Double3 place) {
@@ -151,39 +146,6 @@ void Collapser::list_edges(std::uint32_t u, EdgeList& list) const {
     price(u, list);
 }
 
-double Collapser::deviation(const EdgeStar& star, Double3 place, Float3& witness,
-                            float& place_deviation) const {
-    const auto to_new = [&](Double3 p) {
-        double nearest = std::numeric_limits<double>::infinity();
-        for (const EdgeStar::Wing& wing : star.wings)
-            nearest = std::min(nearest, distance2_to_triangle(p, place, wing.pa, wing.pb));
-        return nearest;
-    };
-    double farthest = std::max(to_new(star.pu), to_new(star.pv));
-    double witness_distance = -1;
-    for (const std::uint32_t end : {star.u, star.v}) {
-        const double d = to_new(to_double(histories_[end].witness));
-        if (d > witness_distance) {
-            witness_distance = d;
-            witness = histories_[end].witness;
-        }
-    }
-    farthest = std::max(farthest, witness_distance);
-
-    double to_old = std::numeric_limits<double>::infinity();
-    for (const EdgeStar::Wing& wing : star.wings)
-        to_old = std::min(to_old,
-                          distance2_to_triangle(place, wing.at_first ? star.pu : star.pv, wing.pa, wing.pb));
-    for (const Double3 opposite : star.opposite_places)
-        to_old = std::min(to_old, distance2_to_triangle(place, star.pu, star.pv, opposite));
-    const double du = length(place - star.pu), dv = length(place - star.pv);
-    const double t = du + dv > 0 ? du / (du + dv) : 0;
-    const double carried =
-        (1 - t) * double(histories_[star.u].deviation) + t * double(histories_[star.v].deviation);
-    place_deviation = float(std::sqrt(to_old) + carried);
-    return std::max(std::sqrt(farthest), double(place_deviation));
-}
-
 bool Collapser::attempt(std::uint32_t u, const Option& option, Bucket bucket, float& cost) {
     cost = kNeverCost;
     star_.gather(mesh_, u, option.other);
@@ -195,22 +157,21 @@ bool Collapser::attempt(std::uint32_t u, const Option& option, Bucket bucket, fl
                                ? mesh_.raw_position(nearer_end(star_, option.candidate.place))
                                : mesh_.round(option.candidate.place);
     const Double3 place = mesh_.work(rounded);
+    star_.place_at(place);
     if (!guards_.keeps_shape(star_, place, histories_, strictness_)) return false;
-    Float3 witness;
-    float place_deviation = 0;
-    const double d = deviation(star_, place, witness, place_deviation);
+    const Deviation deviation = deviation_of(star_, place, histories_);
+    const double d = deviation.largest;
     const double weight = 0.5 * (double(mesh_.vertex(u).weight) + double(mesh_.vertex(option.other).weight));
     // The same dimension as the cost, so that one factor serves every level: area^0.5 times distance^4.
     const double size = double(mesh_.vertex(u).size) + double(mesh_.vertex(option.other).size);
     const double limit = paper_ ? 0 : options_.deviation_limit * d * d * d * d * std::sqrt(size) * weight;
     cost = float(std::max(option.candidate.cost, limit));
     if (BucketQueue::bucket_of(cost) > bucket) return false;
-    apply(star_, option, rounded, witness, place_deviation, float(d));
+    apply(star_, option, rounded, deviation);
     return true;
 }
 
-void Collapser::apply(const EdgeStar& star, const Option& option, Float3 place, Float3 witness,
-                      float place_deviation, float error) {
+void Collapser::apply(const EdgeStar& star, const Option& option, Float3 place, const Deviation& deviation) {
     std::uint32_t parent = star.u, child = star.v;
     const bool may_swap = option.fold == Fold::kAnywhere && mesh_.kind(star.u) == mesh_.kind(star.v);
     if (option.fold == Fold::kIntoSecond ||
@@ -218,21 +179,8 @@ void Collapser::apply(const EdgeStar& star, const Option& option, Float3 place, 
         (may_swap && mesh_.star(star.v).size() > mesh_.star(star.u).size()))
         std::swap(parent, child);
 
-    const Double3 at = mesh_.work(place);
-    for (const EdgeStar::Wing& wing : star.wings) {
-        const TrianglePart before(wing.normal), after(cross(wing.pa - at, wing.pb - at));
-        for (const std::uint32_t w : {wing.a, wing.b}) {
-            add_triangle(mesh_.vertex(w), before, -1);
-            add_triangle(mesh_.vertex(w), after, 1);
-        }
-    }
-    for (std::size_t i = 0; i < star.opposite.size(); ++i) {
-        Double3 n = cross(star.pv - star.pu, star.opposite_places[i] - star.pu);
-        if (!star.forward[i]) n = n * -1.0;
-        add_triangle(mesh_.vertex(star.opposite[i]), TrianglePart(n), -1);
-    }
-
-    error_ = std::max(error_, error);
+    const TrianglePart<double> part = update_ring(mesh_, star);
+    error_ = std::max(error_, float(deviation.largest));
     const std::uint32_t before = mesh_.live_triangles();
     const Float3 parent_position = mesh_.raw_position(parent);
     const float parent_weight = weights_.empty() ? 1 : weights_[parent];
@@ -243,13 +191,16 @@ void Collapser::apply(const EdgeStar& star, const Option& option, Float3 place, 
 
     VertexHistory& history = histories_[parent];
     for (std::size_t i = 0; i < 3; ++i) history.normal[i] += histories_[child].normal[i];
-    history.deviation = place_deviation;
-    history.witness = witness;
+    history.deviation = deviation.at_place;
+    history.witness = deviation.witness;
     Vertex& shape = mesh_.vertex(parent);
     shape.weight = 0.5f * (shape.weight + mesh_.vertex(child).weight);
     if (!weights_.empty()) weights_[parent] = 0.5f * (weights_[parent] + weights_[child]);
     if (paper_) paper_->merge(parent, child);
-    rebuild_shape(mesh_, parent, options_.boundary_weight, ring_);
+    if (mesh_.kind(parent) == VertexKind::kInner)
+        set_part(shape, part);
+    else
+        rebuild_shape(mesh_, parent, options_.boundary_weight, ring_);
 
     ring_edges_.clear();
     visit_neighbours(mesh_, parent, ring_, [&](std::uint32_t w) { ring_edges_.add(w, Fold::kNever); });

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "components.hpp"
+#include "deviation.hpp"
 #include "guards.hpp"
 #include "paper_cost.hpp"
 #include "quadric_cost.hpp"
@@ -80,9 +81,7 @@ class Collapser {
     void process_component(std::uint32_t component, Bucket bucket);
     /// True if it was done; false sets `cost` to what it has to wait for (infinity: never as things are).
     bool attempt(std::uint32_t u, const Option& option, Bucket bucket, float& cost);
-    double deviation(const EdgeStar& star, Double3 place, Float3& witness, float& place_deviation) const;
-    void apply(const EdgeStar& star, const Option& option, Float3 place, Float3 witness,
-               float place_deviation, float error);
+    void apply(const EdgeStar& star, const Option& option, Float3 place, const Deviation& deviation);
     /// After a collapse: prices the new vertex's edges, and offers them to those neighbours who own them.
     void reprice(std::uint32_t parent, std::uint32_t child, Bucket now);
     std::uint32_t component_item(std::uint32_t component) const { return mesh_.vertex_count() + component; }

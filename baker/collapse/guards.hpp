@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "quadric_cost.hpp"
+#include "edge_star.hpp"
 #include "star_mesh.hpp"
 
 namespace vsplit::bake {
@@ -23,24 +23,6 @@ enum class Fold : std::uint8_t {
 /// By the kinds of the ends, and whether the edge is special.
 Fold fold_rule(const StarMesh& mesh, std::uint32_t u, std::uint32_t v);
 
-/// The triangles that an edge's collapse changes, gathered once for all tests.
-struct EdgeStar {
-    struct Wing {
-        std::uint32_t a, b;  ///< The triangle is (apex, a, b), counter-clockwise.
-        Double3 pa, pb;
-        Double3 normal;  ///< Twice the area vector.
-        bool at_first;   ///< The apex is the edge's first vertex.
-    };
-    std::uint32_t u = 0, v = 0;
-    Double3 pu, pv;
-    std::vector<Wing> wings;              ///< Triangles that stay.
-    std::vector<std::uint32_t> opposite;  ///< Third vertices of the triangles on the edge.
-    std::vector<Double3> opposite_places;
-    std::vector<bool> forward;  ///< The triangle on the edge runs along it from u to v.
-
-    void gather(const StarMesh& mesh, std::uint32_t first, std::uint32_t second);
-};
-
 /// How strict the guards are; later passes get past what stops the first.
 struct Strictness {
     double min_normal_cosine;
@@ -55,7 +37,8 @@ class Guards {
 
     /// The link condition, and what else collapsing the edge would do to the topology.
     bool keeps_topology(const EdgeStar& star);
-    /// No triangle flips, folds over or becomes a sliver when the remaining vertex is put at `place`.
+    /// No triangle flips, folds over or becomes a sliver when the remaining vertex goes where `star` is
+    /// placed.
     bool keeps_shape(const EdgeStar& star, Double3 place, const std::vector<VertexHistory>& histories,
                      const Strictness& strictness) const;
 

@@ -74,7 +74,8 @@ double PaperCost::cost_at(const EdgeStar& star, Double3 place, double weight_u, 
     at_u.clear();
     at_v.clear();
     on_edge.clear();
-    for (const EdgeStar::Wing& wing : star.wings) {
+    for (std::size_t i = 0; i < star.size; ++i) {
+        const EdgeStar::Wing wing = star.wing(i);
         regular += regularity(place, wing.pa, wing.pb);
         const Double3 apex = wing.at_first ? star.pu : star.pv;
         (wing.at_first ? at_u : at_v).push_back(unit(cross(wing.pa - apex, wing.pb - apex)));
@@ -87,8 +88,7 @@ double PaperCost::cost_at(const EdgeStar& star, Double3 place, double weight_u, 
     // The edge's triangles are at both ends, too; against themselves their smallest turn is 0, so they add
     // nothing.
     constexpr double kLeastRegularity = 1e-3;
-    const double re =
-        star.wings.empty() ? 1 : std::max(kLeastRegularity, regular / double(star.wings.size()));
+    const double re = star.size == 0 ? 1 : std::max(kLeastRegularity, regular / double(star.size));
     const double len = length(star.pv - star.pu);
     const double fu = len * edge_curvature(at_u, on_edge), fv = len * edge_curvature(at_v, on_edge);
     return weight_u * (quadrics_[star.u].distance(place) / re + fu) +

@@ -14,7 +14,7 @@ VSPLIT_CLONES void price_edges(const StarMesh& mesh, std::uint32_t u, std::span<
         const float* four[4];
         for (std::size_t i = 0; i < 4; ++i)
             four[i] = &mesh.vertex(others[std::min(begin + i, last)]).position.x;
-        Lanes rows[4][4];
+        alignas(32) Lanes rows[4][4];
         for (std::size_t row = 0; row < 4; ++row)
             transpose(four[0] + 4 * row, four[1] + 4 * row, four[2] + 4 * row, four[3] + 4 * row, rows[row]);
         const Shape<Lanes> second{mesh.work(rows[0]),
@@ -26,6 +26,45 @@ VSPLIT_CLONES void price_edges(const StarMesh& mesh, std::uint32_t u, std::span<
         const Lanes price = edges.price(edges.best().cost);
         for (std::size_t i = 0; i < 4 && begin + i < others.size(); ++i) prices[begin + i] = float(price[i]);
     }
+}
+
+VSPLIT_CLONES TrianglePart<double> update_ring(StarMesh& mesh, const EdgeStar& star) {
+    TrianglePart<Lanes> whole;
+    for (std::size_t i = 0; i < star.wings.size(); ++i) {
+        const LaneMask counts = double(4 * i) + Lanes{0, 1, 2, 3} < double(star.size);
+        TrianglePart<Lanes> change(star.wings[i].after);
+        whole.add(change, select(counts, lanes(1), lanes(0)));
+        change.add(TrianglePart<Lanes>(star.wings[i].before), lanes(-1));
+        const auto& q = change.quadric;
+        FourFloats rows[3][4];
+        transpose(q[0], q[1], q[2], q[3], rows[0]);
+        transpose(q[4], q[5], change.area.x, change.area.y, rows[1]);
+        transpose(change.area.z, change.size, lanes(0), lanes(0), rows[2]);
+        for (std::size_t k = 0; k < 4 && 4 * i + k < star.size; ++k)
+            for (const std::uint32_t w : {star.a[4 * i + k], star.b[4 * i + k]}) {
+                float* shape = mesh.vertex(w).quadric;
+                FourFloats low, high;
+                __builtin_memcpy(&low, shape, 16);
+                __builtin_memcpy(&high, shape + 4, 16);
+                low += rows[0][k];
+                high += rows[1][k];
+                __builtin_memcpy(shape, &low, 16);
+                __builtin_memcpy(shape + 4, &high, 16);
+                mesh.vertex(w).area[2] += rows[2][k][0];
+                mesh.vertex(w).size += rows[2][k][1];
+            }
+    }
+    for (std::size_t i = 0; i < star.opposite.size(); ++i) {
+        TrianglePart<double> gone;
+        const Double3 n = cross(star.pv - star.pu, star.opposite_places[i] - star.pu);
+        gone.add(TrianglePart<double>(star.forward[i] ? n : n * -1.0), -1);
+        add_part(mesh.vertex(star.opposite[i]), gone);
+    }
+    TrianglePart<double> total;
+    for (std::size_t i = 0; i < 6; ++i) total.quadric[i] = sum(whole.quadric[i]);
+    total.area = {sum(whole.area.x), sum(whole.area.y), sum(whole.area.z)};
+    total.size = sum(whole.size);
+    return total;
 }
 
 }  // namespace vsplit::bake

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <span>
 
+#include "edge_star.hpp"
 #include "star_mesh.hpp"
 #include "vsplit/bake/collapse.hpp"
 
@@ -19,7 +20,7 @@ namespace vsplit::bake {
 /// Symmetric 3x3 matrix: xx xy xz yy yz zz.
 template <class Real>
 struct SymmetricOf {
-    Real m[6]{};
+    alignas(sizeof(Real)) Real m[6]{};
     VSPLIT_INLINE Real& operator[](std::size_t i) { return m[i]; }
     VSPLIT_INLINE const Real& operator[](std::size_t i) const { return m[i]; }
 };
@@ -169,32 +170,47 @@ class EdgeQuadric {
 void price_edges(const StarMesh& mesh, std::uint32_t u, std::span<const std::uint32_t> others,
                  const CollapseOptions& options, float* prices);
 
-/// A triangle's part of the shapes of its corners.
+/// A triangle's part of the shapes of its corners, or that of each of four.
+template <class Real>
 struct TrianglePart {
-    explicit TrianglePart(Double3 twice_area_vector) : n2(twice_area_vector) {
-        const double len = length(n2);
-        size = 0.5 * len;
-        scale = len > 0 ? 0.25 * std::sqrt(size) / size : 0;  // area^1.5 n nT = scale n2 n2T
+    VSPLIT_INLINE explicit TrianglePart(Vec3<Real> n2) : area(n2 * 0.5) {
+        size = square_root(length2(area));
+        // area^1.5 n nT = area aT / sqrt(size)
+        const Vec3<Real> scaled = area * select(size > 0.0, 1.0 / square_root(size), size * 0.0);
+        quadric = {{scaled.x * area.x, scaled.x * area.y, scaled.x * area.z, scaled.y * area.y,
+                    scaled.y * area.z, scaled.z * area.z}};
     }
-    Double3 n2;
-    double size = 0, scale = 0;
+    VSPLIT_INLINE TrianglePart() = default;
+    VSPLIT_INLINE void add(const TrianglePart& other, Real sign) {
+        for (std::size_t i = 0; i < 6; ++i) quadric[i] += sign * other.quadric[i];
+        area = area + other.area * sign;
+        size += sign * other.size;
+    }
+    SymmetricOf<Real> quadric;
+    Vec3<Real> area;
+    Real size{};
 };
 
-/// Adds (sign 1) or takes away (-1) a triangle's part.
-inline void add_triangle(Vertex& shape, const TrianglePart& part, double sign) {
-    const double s = sign * part.scale;
-    const Double3 n = part.n2;
-    shape.quadric[0] += float(s * n.x * n.x);
-    shape.quadric[1] += float(s * n.x * n.y);
-    shape.quadric[2] += float(s * n.x * n.z);
-    shape.quadric[3] += float(s * n.y * n.y);
-    shape.quadric[4] += float(s * n.y * n.z);
-    shape.quadric[5] += float(s * n.z * n.z);
-    shape.area[0] += float(sign * 0.5 * n.x);
-    shape.area[1] += float(sign * 0.5 * n.y);
-    shape.area[2] += float(sign * 0.5 * n.z);
-    shape.size += float(sign * part.size);
+/// Adds a triangle's part, or the change of it.
+inline void add_part(Vertex& vertex, const TrianglePart<double>& part) {
+    for (std::size_t i = 0; i < 6; ++i) vertex.quadric[i] += float(part.quadric[i]);
+    vertex.area[0] += float(part.area.x);
+    vertex.area[1] += float(part.area.y);
+    vertex.area[2] += float(part.area.z);
+    vertex.size += float(part.size);
 }
+
+/// The parts of a vertex's triangles alone, from scratch.
+inline void set_part(Vertex& vertex, const TrianglePart<double>& part) {
+    for (float& q : vertex.quadric) q = 0;
+    for (float& a : vertex.area) a = 0;
+    vertex.size = 0;
+    add_part(vertex, part);
+}
+
+/// After the star's edge collapsed to where it is placed: brings the shapes of the ring up to date, and says
+/// the new vertex's.
+TrianglePart<double> update_ring(StarMesh& mesh, const EdgeStar& star);
 
 /// Adds a boundary edge's part: its length to the third power times the squared distance to its line (after
 /// Lindstrom and Turk 1998, section 4.2, in the dimension of the triangles' parts).
@@ -211,12 +227,11 @@ inline void add_boundary(Vertex& shape, Double3 edge, double boundary_weight) {
 /// The shape from scratch; the weight stays.
 inline void rebuild_shape(StarMesh& mesh, std::uint32_t v, double boundary_weight,
                           std::vector<Neighbour>& scratch) {
-    Vertex& shape = mesh.vertex(v);
-    for (float& q : shape.quadric) q = 0;
-    for (float& a : shape.area) a = 0;
-    shape.size = 0;
+    TrianglePart<double> sum;
     for (const std::uint32_t t : mesh.star(v))
-        add_triangle(shape, TrianglePart(mesh.normal(mesh.triangle(t))), 1);
+        sum.add(TrianglePart<double>(mesh.normal(mesh.triangle(t))), 1);
+    Vertex& shape = mesh.vertex(v);
+    set_part(shape, sum);
     if (mesh.kind(v) == VertexKind::kInner) return;
     neighbours_of(mesh, v, scratch);
     const Double3 p = mesh.position(v);

@@ -46,6 +46,13 @@ class StarMesh {
     VSPLIT_INLINE Lanes3 work(const Lanes (&p)[4]) const {
         return {(p[0] - centre_.x) * scale_, (p[1] - centre_.y) * scale_, (p[2] - centre_.z) * scale_};
     }
+    /// Of four vertices.
+    VSPLIT_INLINE Lanes3 positions(const std::uint32_t* v) const {
+        alignas(32) Lanes row[4];
+        transpose(&vertices_[v[0]].position.x, &vertices_[v[1]].position.x, &vertices_[v[2]].position.x,
+                  &vertices_[v[3]].position.x, row);
+        return work(row);
+    }
     /// The float position nearest to a working position.
     Float3 round(Double3 p) const {
         const double inverse = 1 / scale_;

@@ -4,6 +4,7 @@
 // Points and vectors of the collapse engine, one at a time or four.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 namespace vsplit::bake {
@@ -11,6 +12,7 @@ namespace vsplit::bake {
 /// Functions over Lanes must be inlined into one of VSPLIT_CLONES: only there is the width of the machine's
 /// registers known.
 #define VSPLIT_INLINE inline __attribute__((always_inline))
+#define VSPLIT_INLINE_LAMBDA __attribute__((always_inline))
 /// Compiles a function twice, the wider one is taken where it runs. Nothing is contracted or reordered: both
 /// give the same bits.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && defined(__gnu_linux__)
@@ -54,7 +56,9 @@ VSPLIT_INLINE Lanes square_root(Lanes x) {
 
 template <class Real>
 struct Vec3 {
-    Real x{}, y{}, z{};
+    // The wide clones expect the full alignment, which a base machine's ABI does not give.
+    alignas(sizeof(Real)) Real x{};
+    Real y{}, z{};
 };
 
 /// A point or vector in working coordinates: the mesh recentred and scaled to about unit size.
@@ -90,6 +94,13 @@ inline double length(Double3 a) {
     return std::sqrt(length2(a));
 }
 
+VSPLIT_INLINE double sum(Lanes x) {
+    return (x[0] + x[1]) + (x[2] + x[3]);
+}
+VSPLIT_INLINE double least(Lanes x) {
+    return std::min(std::min(x[0], x[1]), std::min(x[2], x[3]));
+}
+
 VSPLIT_INLINE Lanes3 lanes(Double3 a) {
     return {lanes(a.x), lanes(a.y), lanes(a.z)};
 }
@@ -98,23 +109,33 @@ VSPLIT_INLINE Vec3<Real> select(Mask mask, Vec3<Real> a, Vec3<Real> b) {
     return {select(mask, a.x, b.x), select(mask, a.y, b.y), select(mask, a.z, b.z)};
 }
 
-/// Reads four times four floats, and gives back the first, second, third and fourth of each.
+/// The first, second, third and fourth of each of four times four.
+VSPLIT_INLINE void transpose(const FourFloats (&in)[4], FourFloats (&out)[4]) {
+    using Order = int __attribute__((vector_size(16)));
+    const FourFloats ab_low = __builtin_shuffle(in[0], in[1], Order{0, 4, 1, 5}),
+                     ab_high = __builtin_shuffle(in[0], in[1], Order{2, 6, 3, 7});
+    const FourFloats cd_low = __builtin_shuffle(in[2], in[3], Order{0, 4, 1, 5}),
+                     cd_high = __builtin_shuffle(in[2], in[3], Order{2, 6, 3, 7});
+    out[0] = __builtin_shuffle(ab_low, cd_low, Order{0, 1, 4, 5});
+    out[1] = __builtin_shuffle(ab_low, cd_low, Order{2, 3, 6, 7});
+    out[2] = __builtin_shuffle(ab_high, cd_high, Order{0, 1, 4, 5});
+    out[3] = __builtin_shuffle(ab_high, cd_high, Order{2, 3, 6, 7});
+}
+/// Four floats from each address.
 VSPLIT_INLINE void transpose(const float* a, const float* b, const float* c, const float* d,
                              Lanes (&out)[4]) {
-    FourFloats rows[4];
-    __builtin_memcpy(&rows[0], a, 16);
-    __builtin_memcpy(&rows[1], b, 16);
-    __builtin_memcpy(&rows[2], c, 16);
-    __builtin_memcpy(&rows[3], d, 16);
-    using Order = int __attribute__((vector_size(16)));
-    const FourFloats ab_low = __builtin_shuffle(rows[0], rows[1], Order{0, 4, 1, 5}),
-                     ab_high = __builtin_shuffle(rows[0], rows[1], Order{2, 6, 3, 7});
-    const FourFloats cd_low = __builtin_shuffle(rows[2], rows[3], Order{0, 4, 1, 5}),
-                     cd_high = __builtin_shuffle(rows[2], rows[3], Order{2, 6, 3, 7});
-    out[0] = __builtin_convertvector(__builtin_shuffle(ab_low, cd_low, Order{0, 1, 4, 5}), Lanes);
-    out[1] = __builtin_convertvector(__builtin_shuffle(ab_low, cd_low, Order{2, 3, 6, 7}), Lanes);
-    out[2] = __builtin_convertvector(__builtin_shuffle(ab_high, cd_high, Order{0, 1, 4, 5}), Lanes);
-    out[3] = __builtin_convertvector(__builtin_shuffle(ab_high, cd_high, Order{2, 3, 6, 7}), Lanes);
+    FourFloats in[4], turned[4];
+    __builtin_memcpy(&in[0], a, 16);
+    __builtin_memcpy(&in[1], b, 16);
+    __builtin_memcpy(&in[2], c, 16);
+    __builtin_memcpy(&in[3], d, 16);
+    transpose(in, turned);
+    for (int i = 0; i < 4; ++i) out[i] = __builtin_convertvector(turned[i], Lanes);
+}
+VSPLIT_INLINE void transpose(Lanes a, Lanes b, Lanes c, Lanes d, FourFloats (&out)[4]) {
+    const FourFloats in[4] = {__builtin_convertvector(a, FourFloats), __builtin_convertvector(b, FourFloats),
+                              __builtin_convertvector(c, FourFloats), __builtin_convertvector(d, FourFloats)};
+    transpose(in, out);
 }
 
 }  // namespace vsplit::bake
