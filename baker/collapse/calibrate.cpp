@@ -12,7 +12,7 @@
 #include <numeric>
 #include <optional>
 
-#include "distance.hpp"
+#include "triangle_distance.hpp"
 #include "triangle_tree.hpp"
 #include "vsplit/live_mesh.hpp"
 

@@ -6,7 +6,7 @@
 #include <limits>
 #include <numeric>
 
-#include "distance.hpp"
+#include "triangle_distance.hpp"
 
 namespace vsplit::bake {
 namespace {
