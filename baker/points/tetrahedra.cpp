@@ -1,0 +1,193 @@
+// SPDX-FileCopyrightText: 2026 The vsplit authors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "points/tetrahedra.hpp"
+
+#include <CGAL/Delaunay_triangulation_3.h>
+#include <CGAL/Delaunay_triangulation_cell_base_3.h>
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Triangulation_cell_base_with_info_3.h>
+#include <CGAL/Triangulation_vertex_base_with_info_3.h>
+
+#include <algorithm>
+#include <cstring>
+#include <numeric>
+
+namespace vsplit::bake {
+namespace {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using VertexBase = CGAL::Triangulation_vertex_base_with_info_3<std::uint32_t, Kernel>;
+using CellBase = CGAL::Triangulation_cell_base_with_info_3<std::uint32_t, Kernel, CGAL::Delaunay_triangulation_cell_base_3<Kernel>>;
+using Sequential = CGAL::Delaunay_triangulation_3<Kernel, CGAL::Triangulation_data_structure_3<VertexBase, CellBase>>;
+using Concurrent = CGAL::Delaunay_triangulation_3<
+    Kernel, CGAL::Triangulation_data_structure_3<VertexBase, CellBase, CGAL::Parallel_tag>>;
+
+/// Vertices in the order that Tetrahedra promises.
+Corners canonical(Corners c) {
+    // Swaps come in pairs, so that the orientation stays.
+    const auto bring = [&c](std::size_t to) {
+        const auto from = static_cast<std::size_t>(std::min_element(c.begin() + static_cast<std::ptrdiff_t>(to), c.end()) - c.begin());
+        if (from == to) return;
+        std::swap(c[to], c[from]);
+        std::swap(c[2], c[3]);
+    };
+    bring(0);
+    bring(1);
+    return c;
+}
+
+template <class Triangulation>
+Tetrahedra flatten(const Triangulation& triangulation, std::vector<Vec3> points, std::size_t samples) {
+    Tetrahedra out;
+    out.points = std::move(points);
+    out.samples = samples;
+    const std::size_t count = triangulation.dimension() == 3 ? triangulation.number_of_finite_cells() : 0;
+    if (count == 0) return out;
+
+    std::vector<typename Triangulation::Cell_handle> handles;
+    handles.reserve(count);
+    std::vector<std::uint32_t> starts(out.points.size() + 1, 0);
+    std::vector<Corners> unsorted;
+    unsorted.reserve(count);
+    for (auto c = triangulation.all_cells_begin(); c != triangulation.all_cells_end(); ++c) {
+        c->info() = kNone;
+        if (triangulation.is_infinite(c)) continue;
+        handles.push_back(c);
+        unsorted.push_back(canonical({c->vertex(0)->info(), c->vertex(1)->info(), c->vertex(2)->info(), c->vertex(3)->info()}));
+        ++starts[unsorted.back()[0] + 1];
+    }
+    for (std::size_t i = 1; i < starts.size(); ++i) starts[i] += starts[i - 1];
+    std::vector<std::uint32_t> order(count);
+    std::vector<std::uint32_t> cursor(starts.begin(), starts.end() - 1);
+    for (std::uint32_t i = 0; i < count; ++i) order[cursor[unsorted[i][0]]++] = i;
+    for (std::size_t v = 0; v + 1 < starts.size(); ++v)
+        std::sort(order.begin() + starts[v], order.begin() + starts[v + 1],
+                  [&](std::uint32_t a, std::uint32_t b) { return unsorted[a] < unsorted[b]; });
+
+    out.cells.resize(count);
+    for (std::uint32_t i = 0; i < count; ++i) {
+        out.cells[i] = unsorted[order[i]];
+        handles[order[i]]->info() = i;
+    }
+    std::vector<Corners>().swap(unsorted);
+    out.neighbours.resize(count);
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const auto c = handles[order[i]];
+        for (int k = 0; k < 4; ++k) {
+            const std::uint32_t v = c->vertex(k)->info();
+            const Corners& corners = out.cells[i];
+            const auto slot = static_cast<std::size_t>(std::find(corners.begin(), corners.end(), v) - corners.begin());
+            out.neighbours[i][slot] = c->neighbor(k)->info();
+        }
+    }
+    return out;
+}
+
+constexpr int kHilbertBits = 21;
+
+/// Place along the Hilbert curve (Skilling, "Programming the Hilbert curve", 2004).
+std::uint64_t hilbert_key(std::array<std::uint32_t, 3> x) {
+    for (std::uint32_t bit = 1u << (kHilbertBits - 1); bit > 1; bit >>= 1) {
+        const std::uint32_t mask = bit - 1;
+        for (std::size_t i = 0; i < 3; ++i) {
+            if (x[i] & bit) {
+                x[0] ^= mask;
+            } else {
+                const std::uint32_t t = (x[0] ^ x[i]) & mask;
+                x[0] ^= t;
+                x[i] ^= t;
+            }
+        }
+    }
+    x[1] ^= x[0];
+    x[2] ^= x[1];
+    std::uint32_t t = 0;
+    for (std::uint32_t bit = 1u << (kHilbertBits - 1); bit > 1; bit >>= 1)
+        if (x[2] & bit) t ^= bit - 1;
+    for (std::uint32_t& v : x) v ^= t;
+    std::uint64_t key = 0;
+    for (int b = kHilbertBits - 1; b >= 0; --b)
+        for (const std::uint32_t v : x) key = key << 1 | (v >> b & 1);
+    return key;
+}
+
+/// Rounds of growing size, each along the curve: the biased randomised insertion order of Amenta, Choi and Rote,
+/// "Incremental constructions con BRIO" (2003), with a hash of the index for a die.
+std::vector<std::uint32_t> insertion_order(std::size_t count) {
+    std::vector<std::vector<std::uint32_t>> rounds;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        std::uint64_t die = (i + 1) * 0x9E3779B97F4A7C15ull;
+        die ^= die >> 32;
+        die *= 0xD6E8FEB86659FD93ull;
+        die ^= die >> 32;
+        std::size_t round = 0;
+        for (; (die & 7) == 0 && round < 7; die >>= 3) ++round;
+        if (rounds.size() <= round) rounds.resize(round + 1);
+        rounds[round].push_back(i);
+    }
+    std::vector<std::uint32_t> order;
+    order.reserve(count);
+    for (std::size_t r = rounds.size(); r-- > 0;) order.insert(order.end(), rounds[r].begin(), rounds[r].end());
+    return order;
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> spatial_order(std::span<const Vec3> points) {
+    if (points.empty()) return {};
+    Vec3 low = points[0], high = points[0];
+    for (const Vec3& p : points) {
+        low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+        high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+    }
+    const double side = std::max({high.x - low.x, high.y - low.y, high.z - low.z});
+    const double scale = side > 0 ? ((1 << kHilbertBits) - 1) / side : 0;
+    std::vector<std::pair<std::uint64_t, std::uint32_t>> keys(points.size());
+    for (std::uint32_t i = 0; i < points.size(); ++i) {
+        const Vec3 q = (points[i] - low) * scale;
+        keys[i] = {hilbert_key({static_cast<std::uint32_t>(q.x), static_cast<std::uint32_t>(q.y), static_cast<std::uint32_t>(q.z)}), i};
+    }
+    std::sort(keys.begin(), keys.end());
+    std::vector<std::uint32_t> order(points.size());
+    for (std::size_t i = 0; i < keys.size(); ++i) order[i] = keys[i].second;
+    return order;
+}
+
+Tetrahedra tetrahedralise(std::vector<Vec3> points, std::size_t samples, int threads) {
+    if (threads > 1) {
+        std::vector<Kernel::Point_3> copies;
+        copies.reserve(points.size());
+        for (const Vec3& p : points) copies.emplace_back(p.x, p.y, p.z);
+        CGAL::Bbox_3 box;
+        for (const auto& p : copies) box += p.bbox();
+        Concurrent::Lock_data_structure locks(box, 50);
+        Concurrent triangulation(copies.begin(), copies.end(), &locks);
+        // The concurrent insertion of CGAL takes plain points; the index is found again by the coordinates.
+        const auto less = [](const Vec3& a, const Vec3& b) {
+            return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
+        };
+        std::vector<std::uint32_t> by_place(points.size());
+        std::iota(by_place.begin(), by_place.end(), 0u);
+        std::sort(by_place.begin(), by_place.end(),
+                  [&](std::uint32_t a, std::uint32_t b) { return less(points[a], points[b]); });
+        for (auto v = triangulation.finite_vertices_begin(); v != triangulation.finite_vertices_end(); ++v) {
+            const Vec3 place{v->point().x(), v->point().y(), v->point().z()};
+            v->info() = *std::lower_bound(by_place.begin(), by_place.end(), place,
+                                          [&](std::uint32_t a, const Vec3& b) { return less(points[a], b); });
+        }
+        return flatten(triangulation, std::move(points), samples);
+    }
+    Sequential triangulation;
+    Sequential::Vertex_handle hint;
+    // The box first: later samples then meet no infinite cells.
+    const auto insert = [&](std::size_t i) {
+        const Vec3& p = points[i];
+        hint = triangulation.insert({p.x, p.y, p.z}, hint);
+        hint->info() = static_cast<std::uint32_t>(i);
+    };
+    for (std::size_t i = samples; i < points.size(); ++i) insert(i);
+    for (const std::uint32_t i : insertion_order(samples)) insert(i);
+    return flatten(triangulation, std::move(points), samples);
+}
+
+}  // namespace vsplit::bake
