@@ -9,7 +9,6 @@
 #include <CGAL/Triangulation_vertex_base_with_info_3.h>
 
 #include <algorithm>
-#include <cstring>
 #include <numeric>
 
 namespace vsplit::bake {
@@ -50,7 +49,7 @@ Tetrahedra flatten(const Triangulation& triangulation, std::vector<Vec3> points,
     std::vector<Corners> unsorted;
     unsorted.reserve(count);
     for (auto c = triangulation.all_cells_begin(); c != triangulation.all_cells_end(); ++c) {
-        c->info() = kNone;
+        c->info() = kNoCell;
         if (triangulation.is_infinite(c)) continue;
         handles.push_back(c);
         unsorted.push_back(canonical({c->vertex(0)->info(), c->vertex(1)->info(), c->vertex(2)->info(), c->vertex(3)->info()}));
@@ -83,34 +82,6 @@ Tetrahedra flatten(const Triangulation& triangulation, std::vector<Vec3> points,
     return out;
 }
 
-constexpr int kHilbertBits = 21;
-
-/// Place along the Hilbert curve (Skilling, "Programming the Hilbert curve", 2004).
-std::uint64_t hilbert_key(std::array<std::uint32_t, 3> x) {
-    for (std::uint32_t bit = 1u << (kHilbertBits - 1); bit > 1; bit >>= 1) {
-        const std::uint32_t mask = bit - 1;
-        for (std::size_t i = 0; i < 3; ++i) {
-            if (x[i] & bit) {
-                x[0] ^= mask;
-            } else {
-                const std::uint32_t t = (x[0] ^ x[i]) & mask;
-                x[0] ^= t;
-                x[i] ^= t;
-            }
-        }
-    }
-    x[1] ^= x[0];
-    x[2] ^= x[1];
-    std::uint32_t t = 0;
-    for (std::uint32_t bit = 1u << (kHilbertBits - 1); bit > 1; bit >>= 1)
-        if (x[2] & bit) t ^= bit - 1;
-    for (std::uint32_t& v : x) v ^= t;
-    std::uint64_t key = 0;
-    for (int b = kHilbertBits - 1; b >= 0; --b)
-        for (const std::uint32_t v : x) key = key << 1 | (v >> b & 1);
-    return key;
-}
-
 /// Rounds of growing size, each along the curve: the biased randomised insertion order of Amenta, Choi and Rote,
 /// "Incremental constructions con BRIO" (2003), with a hash of the index for a die.
 std::vector<std::uint32_t> insertion_order(std::size_t count) {
@@ -132,26 +103,6 @@ std::vector<std::uint32_t> insertion_order(std::size_t count) {
 }
 
 }  // namespace
-
-std::vector<std::uint32_t> spatial_order(std::span<const Vec3> points) {
-    if (points.empty()) return {};
-    Vec3 low = points[0], high = points[0];
-    for (const Vec3& p : points) {
-        low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-        high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-    }
-    const double side = std::max({high.x - low.x, high.y - low.y, high.z - low.z});
-    const double scale = side > 0 ? ((1 << kHilbertBits) - 1) / side : 0;
-    std::vector<std::pair<std::uint64_t, std::uint32_t>> keys(points.size());
-    for (std::uint32_t i = 0; i < points.size(); ++i) {
-        const Vec3 q = (points[i] - low) * scale;
-        keys[i] = {hilbert_key({static_cast<std::uint32_t>(q.x), static_cast<std::uint32_t>(q.y), static_cast<std::uint32_t>(q.z)}), i};
-    }
-    std::sort(keys.begin(), keys.end());
-    std::vector<std::uint32_t> order(points.size());
-    for (std::size_t i = 0; i < keys.size(); ++i) order[i] = keys[i].second;
-    return order;
-}
 
 Tetrahedra tetrahedralise(std::vector<Vec3> points, std::size_t samples, int threads) {
     if (threads > 1) {

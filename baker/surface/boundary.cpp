@@ -47,7 +47,7 @@ Facet turn(const Tetrahedra& t, const std::vector<std::uint8_t>& inside, Facet s
     for (;;) {
         visit(cell);
         const std::uint32_t next = t.neighbours[cell][pivot];
-        if (next == kNone || inside[next] != label) return {cell, static_cast<std::uint8_t>(pivot)};
+        if (next == kNoCell || inside[next] != label) return {cell, static_cast<std::uint8_t>(pivot)};
         const std::uint32_t opened = t.cells[cell][from];
         from = slot_of(t.neighbours[next], cell);
         pivot = slot_of(t.cells[next], opened);
@@ -65,7 +65,7 @@ Facets collect(const Tetrahedra& t, const std::vector<std::uint8_t>& inside) {
         if (!inside[c]) continue;
         for (std::uint8_t k = 0; k < 4; ++k) {
             const std::uint32_t other = t.neighbours[c][k];
-            if ((other != kNone && inside[other]) || has_corner_of_box(t, c, k)) continue;
+            if ((other != kNoCell && inside[other]) || has_corner_of_box(t, c, k)) continue;
             out.masks[c] = static_cast<std::uint8_t>(out.masks[c] | 1u << k);
             out.facets.push_back({c, k});
         }
@@ -85,9 +85,9 @@ Facets collect(const Tetrahedra& t, const std::vector<std::uint8_t>& inside) {
         out.opposite[h] = 3 * g + e;
         out.opposite[3 * g + e] = h;
     }
-    out.vertex.assign(edges, kNone);
+    out.vertex.assign(edges, kNoCell);
     for (std::uint32_t h = 0; h < edges; ++h) {
-        if (out.vertex[h] != kNone) continue;
+        if (out.vertex[h] != kNoCell) continue;
         const auto fan = static_cast<std::uint32_t>(out.sample.size());
         out.sample.push_back(facet_corner(t, out.facets[h / 3], h % 3));
         std::uint32_t first = h;
@@ -139,7 +139,7 @@ Fans groups_around(const Tetrahedra& t, const std::vector<std::uint8_t>& inside,
     for (std::size_t i = 0; i < cells.size(); ++i)
         for (std::size_t k = 0; k < 4; ++k) {
             const std::uint32_t other = t.neighbours[cells[i]][k];
-            if (t.cells[cells[i]][k] == sample || other == kNone) continue;
+            if (t.cells[cells[i]][k] == sample || other == kNoCell) continue;
             if (std::find(cells.begin(), cells.end(), other) == cells.end()) cells.push_back(other);
         }
     std::sort(cells.begin(), cells.end());
@@ -155,7 +155,7 @@ Fans groups_around(const Tetrahedra& t, const std::vector<std::uint8_t>& inside,
         for (std::size_t i = 0; i < group.size(); ++i)
             for (std::size_t k = 0; k < 4; ++k) {
                 const std::uint32_t other = t.neighbours[group[i]][k];
-                if (t.cells[group[i]][k] == sample || other == kNone || inside[other] != inside[group[i]]) continue;
+                if (t.cells[group[i]][k] == sample || other == kNoCell || inside[other] != inside[group[i]]) continue;
                 const std::size_t at = place(other);
                 if (seen[at]) continue;
                 seen[at] = 1;
@@ -187,7 +187,7 @@ void untangle(const Tetrahedra& t, std::vector<std::uint8_t>& inside, BoundaryRe
             turn(t, inside, in, h % 3, [&](std::uint32_t c) { wedge.push_back(c); });
             if (may_flip(wedge)) flips.push_back(wedge);
             const std::uint32_t out_cell = t.neighbours[in.cell][in.slot];
-            if (out_cell == kNone) continue;
+            if (out_cell == kNoCell) continue;
             const Facet out{out_cell, static_cast<std::uint8_t>(slot_of(t.neighbours[out_cell], in.cell))};
             const std::uint32_t third = facet_corner(t, in, h % 3 + 2);
             std::uint32_t e = 0;

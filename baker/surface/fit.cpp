@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "points/cholesky.hpp"
+
 namespace vsplit::bake {
 namespace {
 
@@ -29,37 +31,18 @@ Vec3 agreed_normal(std::span<const Vec3> normals, std::span<const double> areas)
     return result;
 }
 
-void make_axes(Patch& patch) {
-    const Vec3 n = patch.normal;
+}  // namespace
+
+void Patch::turn_to(Vec3 n) {
+    normal = n;
     const Vec3 least = std::abs(n.x) <= std::abs(n.y) && std::abs(n.x) <= std::abs(n.z) ? Vec3{1, 0, 0}
                        : std::abs(n.y) <= std::abs(n.z)                                 ? Vec3{0, 1, 0}
                                                                                         : Vec3{0, 0, 1};
-    patch.x_axis = unit(cross(n, least));
-    patch.y_axis = cross(n, patch.x_axis);
+    x_axis = unit(cross(n, least));
+    y_axis = cross(n, x_axis);
 }
 
-/// Solves the symmetric positive definite system in place (Cholesky). False if it is not.
-template <std::size_t N>
-bool solve(std::array<std::array<double, N>, N>& a, std::array<double, N>& b) {
-    for (std::size_t j = 0; j < N; ++j) {
-        for (std::size_t k = 0; k < j; ++k) a[j][j] -= a[j][k] * a[j][k];
-        if (!(a[j][j] > 0)) return false;
-        a[j][j] = std::sqrt(a[j][j]);
-        for (std::size_t i = j + 1; i < N; ++i) {
-            for (std::size_t k = 0; k < j; ++k) a[i][j] -= a[i][k] * a[j][k];
-            a[i][j] /= a[j][j];
-        }
-    }
-    for (std::size_t i = 0; i < N; ++i) {
-        for (std::size_t k = 0; k < i; ++k) b[i] -= a[i][k] * b[k];
-        b[i] /= a[i][i];
-    }
-    for (std::size_t i = N; i-- > 0;) {
-        for (std::size_t k = i + 1; k < N; ++k) b[i] -= a[k][i] * b[k];
-        b[i] /= a[i][i];
-    }
-    return true;
-}
+namespace {
 
 /// Least squares over neighbours that agree with the patch's present normal; turns the patch into the fitted one.
 void fit(Patch& patch, std::uint32_t v, std::span<const std::uint32_t> around, const Crust& crust,
@@ -150,8 +133,7 @@ std::vector<Patch> fit_patches(const Crust& crust, std::span<const std::uint32_t
                     around.push_back(ring[j]);
                 }
             Patch& patch = patches[v];
-            patch.normal = normals[v];
-            make_axes(patch);
+            patch.turn_to(normals[v]);
             fit(patch, v, around, crust, normals);
         }
         for (std::uint32_t v = 0; v < count; ++v) {

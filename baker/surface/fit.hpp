@@ -14,16 +14,17 @@
 
 namespace vsplit::bake {
 
-/// height(x, y) = b[0] xx + b[1] xy + b[2] yy over the plane through the vertex, plus `lift` at the vertex.
+/// The height bend[0] xx + bend[1] xy + bend[2] yy over the tangent plane through a vertex.
 struct Patch {
     Vec3 normal, x_axis, y_axis;
     std::array<double, 3> bend{};
-    double lift = 0;  ///< How far the neighbours see the surface above the vertex; 0 if fitted through it.
 
+    /// A flat frame with this normal.
+    void turn_to(Vec3 n);
     /// How far the patch lies, along its normal, over the point at `offset` from the vertex.
     double height_over(Vec3 offset) const {
         const double x = dot(offset, x_axis), y = dot(offset, y_axis);
-        return lift + bend[0] * x * x + bend[1] * x * y + bend[2] * y * y - dot(offset, normal);
+        return bend[0] * x * x + bend[1] * x * y + bend[2] * y * y - dot(offset, normal);
     }
 };
 

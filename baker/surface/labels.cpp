@@ -89,7 +89,7 @@ Balls circumscribe(const Tetrahedra& tetrahedra) {
 
 Poles find_poles(const Tetrahedra& tetrahedra, const Balls& balls) {
     const std::size_t samples = tetrahedra.samples;
-    Poles poles{std::vector<std::uint32_t>(samples, kNone), std::vector<std::uint32_t>(samples, kNone)};
+    Poles poles{std::vector<std::uint32_t>(samples, kNoCell), std::vector<std::uint32_t>(samples, kNoCell)};
     std::vector<double> farthest(samples, 0);
     const auto count = static_cast<std::uint32_t>(tetrahedra.cells.size());
     for (std::uint32_t i = 0; i < count; ++i)
@@ -120,12 +120,12 @@ std::vector<std::uint8_t> label_cells(const Tetrahedra& tetrahedra, const Balls&
         for (std::uint32_t c = range.begin(); c < range.end(); ++c)
             for (std::uint32_t k = 0; k < 4; ++k) {
                 const std::uint32_t other = tetrahedra.neighbours[c][k];
-                if (other != kNone && other > c) levels[std::size_t{4} * c + k] = link_level(overlap(balls, c, other));
+                if (other != kNoCell && other > c) levels[std::size_t{4} * c + k] = link_level(overlap(balls, c, other));
             }
     });
     tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, samples, kGrain), [&](const auto& range) {
         for (std::uint32_t s = range.begin(); s < range.end(); ++s) {
-            if (poles.first[s] == kNone || poles.second[s] == kNone) continue;
+            if (poles.first[s] == kNoCell || poles.second[s] == kNoCell) continue;
             const Vec3 u = balls.centres[poles.first[s]] - tetrahedra.points[s];
             const Vec3 v = balls.centres[poles.second[s]] - tetrahedra.points[s];
             levels[std::size_t{4} * count + s] = link_level(-dot(u, v) / std::sqrt(squared_length(u) * squared_length(v)));
@@ -156,7 +156,7 @@ std::vector<std::uint8_t> label_cells(const Tetrahedra& tetrahedra, const Balls&
     if (open) {
         std::int64_t votes = 0;
         for (std::uint32_t s = 0; s < samples; ++s)
-            if (poles.second[s] != kNone && inside[poles.first[s]] != inside[poles.second[s]])
+            if (poles.second[s] != kNoCell && inside[poles.first[s]] != inside[poles.second[s]])
                 votes += inside[poles.first[s]] ? 1 : -1;
         outside = votes > 0;
     } else {

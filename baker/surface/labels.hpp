@@ -21,7 +21,7 @@ struct Balls {
 
 Balls circumscribe(const Tetrahedra& tetrahedra);
 
-/// Two cells for each sample, kNone where there is none: the farthest Voronoi vertex of its Voronoi cell, and the farthest
+/// Two cells for each sample, kNoCell where there is none: the farthest Voronoi vertex of its Voronoi cell, and the farthest
 /// on the other side of the sample.
 struct Poles {
     std::vector<std::uint32_t> first, second;
