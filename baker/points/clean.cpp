@@ -1,14 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The vsplit authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <tbb/blocked_range.h>
+#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
 #include <Eigen/Dense>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <memory>
+#include <new>
 #include <numeric>
 #include <tuple>
 
@@ -277,8 +279,10 @@ Result<CleanedCloud> clean_points(PointCloud cloud, const CleanOptions& options,
         if (!std::isfinite(p[0]) || !std::isfinite(p[1]) || !std::isfinite(p[2])) return argument("a position is not finite");
     // CGAL's filters check their input by throwing; nothing may leave this room that way.
     try {
-        tbb::task_arena arena(options.threads > 0 ? options.threads : tbb::task_arena::automatic);
-        return arena.execute([&] { return clean(std::move(cloud), options, progress); });
+        std::unique_ptr<tbb::global_control> limit;
+        if (options.threads > 0)
+            limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism, options.threads);
+        return clean(std::move(cloud), options, progress);
     } catch (const std::bad_alloc&) {
         return Error{ErrorCode::kLimit, "not enough memory to clean the points", Error::kNowhere, 0};
     } catch (const std::exception& e) {

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "points/tetrahedra.hpp"
 
+#include "points/flatten.hpp"
+
 #include <CGAL/Delaunay_triangulation_3.h>
 #include <CGAL/Delaunay_triangulation_cell_base_3.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
@@ -20,67 +22,6 @@ using CellBase = CGAL::Triangulation_cell_base_with_info_3<std::uint32_t, Kernel
 using Sequential = CGAL::Delaunay_triangulation_3<Kernel, CGAL::Triangulation_data_structure_3<VertexBase, CellBase>>;
 using Concurrent = CGAL::Delaunay_triangulation_3<
     Kernel, CGAL::Triangulation_data_structure_3<VertexBase, CellBase, CGAL::Parallel_tag>>;
-
-/// Vertices in the order that Tetrahedra promises.
-Corners canonical(Corners c) {
-    // Swaps come in pairs, so that the orientation stays.
-    const auto bring = [&c](std::size_t to) {
-        const auto from = static_cast<std::size_t>(std::min_element(c.begin() + static_cast<std::ptrdiff_t>(to), c.end()) - c.begin());
-        if (from == to) return;
-        std::swap(c[to], c[from]);
-        std::swap(c[2], c[3]);
-    };
-    bring(0);
-    bring(1);
-    return c;
-}
-
-template <class Triangulation>
-Tetrahedra flatten(const Triangulation& triangulation, std::vector<Vec3> points, std::size_t samples) {
-    Tetrahedra out;
-    out.points = std::move(points);
-    out.samples = samples;
-    const std::size_t count = triangulation.dimension() == 3 ? triangulation.number_of_finite_cells() : 0;
-    if (count == 0) return out;
-
-    std::vector<typename Triangulation::Cell_handle> handles;
-    handles.reserve(count);
-    std::vector<std::uint32_t> starts(out.points.size() + 1, 0);
-    std::vector<Corners> unsorted;
-    unsorted.reserve(count);
-    for (auto c = triangulation.all_cells_begin(); c != triangulation.all_cells_end(); ++c) {
-        c->info() = kNoCell;
-        if (triangulation.is_infinite(c)) continue;
-        handles.push_back(c);
-        unsorted.push_back(canonical({c->vertex(0)->info(), c->vertex(1)->info(), c->vertex(2)->info(), c->vertex(3)->info()}));
-        ++starts[unsorted.back()[0] + 1];
-    }
-    for (std::size_t i = 1; i < starts.size(); ++i) starts[i] += starts[i - 1];
-    std::vector<std::uint32_t> order(count);
-    std::vector<std::uint32_t> cursor(starts.begin(), starts.end() - 1);
-    for (std::uint32_t i = 0; i < count; ++i) order[cursor[unsorted[i][0]]++] = i;
-    for (std::size_t v = 0; v + 1 < starts.size(); ++v)
-        std::sort(order.begin() + starts[v], order.begin() + starts[v + 1],
-                  [&](std::uint32_t a, std::uint32_t b) { return unsorted[a] < unsorted[b]; });
-
-    out.cells.resize(count);
-    for (std::uint32_t i = 0; i < count; ++i) {
-        out.cells[i] = unsorted[order[i]];
-        handles[order[i]]->info() = i;
-    }
-    std::vector<Corners>().swap(unsorted);
-    out.neighbours.resize(count);
-    for (std::uint32_t i = 0; i < count; ++i) {
-        const auto c = handles[order[i]];
-        for (int k = 0; k < 4; ++k) {
-            const std::uint32_t v = c->vertex(k)->info();
-            const Corners& corners = out.cells[i];
-            const auto slot = static_cast<std::size_t>(std::find(corners.begin(), corners.end(), v) - corners.begin());
-            out.neighbours[i][slot] = c->neighbor(k)->info();
-        }
-    }
-    return out;
-}
 
 /// Rounds of growing size, each along the curve: the biased randomised insertion order of Amenta, Choi and Rote,
 /// "Incremental constructions con BRIO" (2003), with a hash of the index for a die.
@@ -105,6 +46,8 @@ std::vector<std::uint32_t> insertion_order(std::size_t count) {
 }  // namespace
 
 Tetrahedra tetrahedralise(std::vector<Vec3> points, std::size_t samples, int threads) {
+    Tetrahedra out;
+    out.samples = samples;
     if (threads > 1) {
         std::vector<Kernel::Point_3> copies;
         copies.reserve(points.size());
@@ -126,7 +69,9 @@ Tetrahedra tetrahedralise(std::vector<Vec3> points, std::size_t samples, int thr
             v->info() = *std::lower_bound(by_place.begin(), by_place.end(), place,
                                           [&](std::uint32_t a, const Vec3& b) { return less(points[a], b); });
         }
-        return flatten(triangulation, std::move(points), samples);
+        flatten(triangulation, points.size(), out.cells, out.neighbours);
+        out.points = std::move(points);
+        return out;
     }
     Sequential triangulation;
     Sequential::Vertex_handle hint;
@@ -138,7 +83,9 @@ Tetrahedra tetrahedralise(std::vector<Vec3> points, std::size_t samples, int thr
     };
     for (std::size_t i = samples; i < points.size(); ++i) insert(i);
     for (const std::uint32_t i : insertion_order(samples)) insert(i);
-    return flatten(triangulation, std::move(points), samples);
+    flatten(triangulation, points.size(), out.cells, out.neighbours);
+    out.points = std::move(points);
+    return out;
 }
 
 }  // namespace vsplit::bake
