@@ -169,7 +169,7 @@ Fans groups_around(const Tetrahedra& t, const std::vector<std::uint8_t>& inside,
 }  // namespace
 
 void untangle(const Tetrahedra& t, std::vector<std::uint8_t>& inside, BoundaryReport& report) {
-    constexpr int kRounds = 10;
+    constexpr int kRounds = 5;
     constexpr std::size_t kFewCells = 4;
     const auto may_flip = [&](const std::vector<std::uint32_t>& cells) {
         return cells.size() <= kFewCells &&
@@ -215,21 +215,15 @@ void untangle(const Tetrahedra& t, std::vector<std::uint8_t>& inside, BoundaryRe
         if (flips.empty()) return;
         // The smallest first; a cell moves once a round.
         std::stable_sort(flips.begin(), flips.end(), [](const auto& a, const auto& b) { return a.size() < b.size(); });
-        std::vector<std::uint32_t> moved;
+        // What is near a cell that moved has changed, and waits for the next round.
+        std::vector<std::uint8_t> touched(inside.size(), 0);
         for (const auto& group : flips) {
-            if (std::any_of(group.begin(), group.end(), [&](std::uint32_t c) {
-                    return std::find(moved.begin(), moved.end(), c) != moved.end();
-                }))
-                continue;
-            // Neighbours wait for the next round: what they touched has changed.
-            bool near = false;
-            for (const std::uint32_t c : group)
-                for (const std::uint32_t n : t.neighbours[c])
-                    near = near || std::find(moved.begin(), moved.end(), n) != moved.end();
-            if (near) continue;
+            if (std::any_of(group.begin(), group.end(), [&](std::uint32_t c) { return touched[c] != 0; })) continue;
             for (const std::uint32_t c : group) {
                 inside[c] ^= 1;
-                moved.push_back(c);
+                touched[c] = 1;
+                for (const std::uint32_t n : t.neighbours[c])
+                    if (n != kNoCell) touched[n] = 1;
             }
             report.cells_flipped += group.size();
         }

@@ -4,7 +4,6 @@
 // The stages of a reconstruction in their order. docs/reconstruction.md explains them.
 #include <sys/resource.h>
 #include <tbb/global_control.h>
-#include <tbb/info.h>
 
 #include <chrono>
 #include <cmath>
@@ -19,6 +18,7 @@
 #include "surface/boundary.hpp"
 #include "surface/classic.hpp"
 #include "surface/dumps.hpp"
+#include "surface/handles.hpp"
 #include "surface/labels.hpp"
 #include "surface/refine.hpp"
 #include "surface/sheet.hpp"
@@ -113,6 +113,17 @@ void survey(const Crust& crust, CrustReport& report) {
     report.genus = (2 * static_cast<std::int64_t>(components) - static_cast<std::int64_t>(loops) - euler) / 2;
 }
 
+/// Median edge length.
+double spacing(const Crust& crust) {
+    std::vector<double> edges;
+    edges.reserve(crust.triangles.size());
+    for (const Triangle& t : crust.triangles) edges.push_back(length(crust.points[t[1]] - crust.points[t[0]]));
+    if (edges.empty()) return 0;
+    const auto middle = edges.begin() + static_cast<std::ptrdiff_t>(edges.size() / 2);
+    std::nth_element(edges.begin(), middle, edges.end());
+    return *middle;
+}
+
 class Reconstructor {
   public:
     Reconstructor(const ReconstructOptions& options, const Progress& progress)
@@ -153,6 +164,21 @@ class Reconstructor {
             BoundaryReport boundary;
             untangle(tetrahedra, inside, boundary);
             crust = extract_boundary(tetrahedra, inside, boundary);
+            survey(crust, report);
+            // Drawing sheets apart may leave a handle of its own; a second look finds most of these.
+            for (int round = 0; round < 2 && report.genus > 0; ++round) {
+                if (!stages_.begin("handles", 0.65)) return stopped();
+                // A sheet has no handles; a closed surface has those that balls of a few spacings fit through.
+                const double smallest = options_.open ? std::numeric_limits<double>::infinity() : 3 * spacing(crust);
+                const std::size_t changed = remove_handles(tetrahedra, balls, inside, 0, smallest) +
+                                            remove_handles(tetrahedra, balls, inside, 1, smallest);
+                if (changed == 0) break;
+                report.handle_cells += changed;
+                boundary.vertices_split = boundary.edges_split = 0;
+                untangle(tetrahedra, inside, boundary);
+                crust = extract_boundary(tetrahedra, inside, boundary);
+                survey(crust, report);
+            }
             report.cells_flipped = boundary.cells_flipped;
             report.vertices_split = boundary.vertices_split;
             report.edges_split = boundary.edges_split;
@@ -178,10 +204,9 @@ class Reconstructor {
   private:
     Error stopped() const { return {ErrorCode::kCancelled, "stopped while reconstructing", Error::kNowhere, 0}; }
 
-    int threads_for(std::size_t count) const {
-        const int threads = options_.threads > 0 ? options_.threads : static_cast<int>(tbb::info::default_concurrency());
-        return count >= kWorthThreads ? threads : 1;
-    }
+    /// CGAL's concurrent triangulation is quicker by the clock on an idle machine, but its threads spin where they wait: it
+    /// costs up to seven times the CPU time on a busy one. So it is used only by who asks for threads.
+    int threads_for(std::size_t count) const { return count >= kWorthThreads ? options_.threads : 1; }
 
     /// The samples and the corners of a box so large that it does not bend what is near them.
     static std::vector<Vec3> boxed(std::vector<Vec3> points) {

@@ -44,7 +44,9 @@ struct ReconstructOptions {
     /// Subtract Reconstruction::origin from all positions. Coordinates far from 0 (map projections) keep their digits so.
     bool relative = false;
     double open_reach = 6;   ///< With `open`: rim triangles longer than this many spacings are trimmed off.
-    int threads = 0;         ///< 0: all. The result does not depend on it.
+    /// 0: all, except for the triangulation itself, which runs on more than one only if told how many. The result does not
+    /// depend on it.
+    int threads = 0;
 };
 
 struct CrustStage {
@@ -60,7 +62,8 @@ struct CrustReport {
     std::uint64_t vertices_split = 0, edges_split = 0;  ///< Where sheets touch and were drawn apart.
     std::uint64_t crease_points = 0, corner_points = 0, curve_points = 0;
     std::uint64_t edges_collapsed = 0, edges_flipped = 0, slivers_left = 0;
-    std::uint64_t components_dropped = 0, triangles_dropped = 0, triangles_trimmed = 0, handles_cut = 0;
+    std::uint64_t components_dropped = 0, triangles_dropped = 0, triangles_trimmed = 0;
+    std::uint64_t handle_cells = 0;       ///< Labels changed because they made a handle too narrow to be meant.
     std::uint64_t samples_unused = 0;     ///< Not a vertex of the surface (before refinement).
     double roughness = 0;                 ///< Noise left, in edge lengths; smoothed if above 0.12.
     bool smoothed = false;
