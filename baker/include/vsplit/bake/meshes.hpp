@@ -52,8 +52,12 @@ struct MeshSurvey {
 
 /// A mesh as read, and what was met.
 struct MeshFile {
+    static constexpr std::uint32_t kDropped = 0xFFFFFFFFu;
+
     Mesh mesh;
     MeshReport report;
+    /// For each vertex as the file lists them: its number in `mesh` after welding and renumbering, or kDropped. Empty: the same.
+    std::vector<std::uint32_t> vertex_of{};
 };
 
 /// How to read.
@@ -72,7 +76,9 @@ struct PolygonSoup {
 };
 
 /// Triangulates, welds, drops what is no triangle, and counts; the way every reader ends. `report.format` is kept.
-/// Order of vertices and triangles is the file's.
+/// Order of vertices and triangles is the file's. kAuto means kBoundary. Counts add to those already in `report`; triangles kept
+/// and dropped together are the corners less two of every face of three corners and more, plus the faces of fewer.
+/// Errors: kMalformed if indices, weights or starts do not fit together or no triangle is left, kLimit.
 Result<MeshFile> assemble_mesh(PolygonSoup&& soup, Weld weld, MeshReport report);
 
 /// Reads a mesh file's bytes. The format is told by content, then by `extension` (".obj"; any case).
@@ -81,8 +87,12 @@ Result<MeshFile> assemble_mesh(PolygonSoup&& soup, Weld weld, MeshReport report)
 Result<MeshFile> parse_mesh(std::span<const std::byte> bytes, std::string_view extension, const ReadOptions& options = {});
 
 /// Per-vertex weights as text: one number a line (blank lines and # comments skipped). Exactly `count` of them, each >= 0;
-/// "inf" is allowed (never collapses).
+/// "inf" is allowed (never collapses). With MeshReport::vertices_in for `count`, see apply_weights.
 Result<std::vector<float>> parse_weights(std::span<const std::byte> bytes, std::size_t count);
+
+/// Sets the mesh's weights from one per vertex as the file lists them; of vertices that were welded the largest counts.
+/// Errors: kArgument if there are not report.vertices_in of them.
+Status apply_weights(MeshFile& file, std::span<const float> weights);
 
 MeshSurvey survey_mesh(const Mesh& mesh);
 
