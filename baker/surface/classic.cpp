@@ -149,13 +149,14 @@ Crust power_faces(const Tetrahedra& tetrahedra, const PoleBalls& poles, const Po
                   const std::vector<std::uint8_t>& inner) {
     Crust crust;
     std::vector<std::uint32_t> vertex(diagram.cells.size(), kNoCell);
+    std::vector<std::uint32_t> shared_samples;
     const auto vertex_of = [&](std::uint32_t cell) {
         if (vertex[cell] != kNoCell) return vertex[cell];
         vertex[cell] = static_cast<std::uint32_t>(crust.points.size());
         const Corners& c = diagram.cells[cell];
         // A sample on the balls of all four poles is where their cells meet, whatever the arithmetic says.
         Vec3 mean;
-        std::size_t touched = 0;
+        shared_samples.clear();
         for (const std::uint32_t s : tetrahedra.cells[poles.cell[c[0]]]) {
             bool all = true;
             for (std::size_t i = 1; i < 4; ++i) {
@@ -177,18 +178,30 @@ Crust power_faces(const Tetrahedra& tetrahedra, const PoleBalls& poles, const Po
                 }
                 if (!shared || s >= tetrahedra.samples) continue;
                 mean = mean + tetrahedra.points[s];
-                ++touched;
+                shared_samples.push_back(s);
             }
         bool known = false;
         const Vec3 centre = power_centre(poles, c, known);
-        if (touched > 0) {
-            mean = mean * (1.0 / static_cast<double>(touched));
-            for (std::size_t i = 0; i < 4; ++i)
-                for (const std::uint32_t s : tetrahedra.cells[poles.cell[c[i]]])
-                    if (s < tetrahedra.samples) reach = std::max(reach, squared_length(tetrahedra.points[s] - mean));
-            known = known && squared_length(centre - mean) <= reach;
+        if (shared_samples.empty()) {
+            // Poles that coincide but for rounding share no sample by name. The vertex lies on or near the inner ball, beside
+            // the samples of an outer one.
+            std::size_t in = 0, out = 0;
+            while (in < 3 && !inner[c[in]]) ++in;
+            while (out < 3 && inner[c[out]]) ++out;
+            Vec3 beside = centre;
+            if (!known)
+                for (const std::uint32_t s : tetrahedra.cells[poles.cell[c[out]]])
+                    if (s < tetrahedra.samples) beside = tetrahedra.points[s];
+            const Vec3 away = beside - poles.centres[c[in]];
+            const double size = squared_length(away), weight = poles.weights[c[in]];
+            const double scale = size > 1.25 * weight ? std::sqrt(weight / size) : 1;
+            crust.points.push_back(poles.centres[c[in]] + away * scale);
+            return vertex[cell];
         }
-        crust.points.push_back(known || touched == 0 ? centre : mean);
+        mean = mean * (1.0 / static_cast<double>(shared_samples.size()));
+        for (const std::uint32_t s : shared_samples) reach = std::max(reach, squared_length(tetrahedra.points[s] - mean));
+        known = known && squared_length(centre - mean) <= 4 * reach;
+        crust.points.push_back(known ? centre : mean);
         return vertex[cell];
     };
     // Permutations (p, q, a, b) of the slots that keep the orientation: crossing the facet without a turns about p -> q.

@@ -78,8 +78,9 @@ Balls circumscribe(const Tetrahedra& tetrahedra) {
             const Vec3 vw = cross(v, w);
             const Vec3 to_centre = (vw * squared_length(u) + cross(w, u) * squared_length(v) + cross(u, v) * squared_length(w)) *
                                    (0.5 / dot(u, vw));
-            const double squared = squared_length(to_centre);
-            const bool known = squared < 1e24;
+            // So flat that rounding decides where the centre is: samples of an exact sphere are full of such cells.
+            const double squared = squared_length(to_centre), six = std::abs(dot(u, vw));
+            const bool known = squared < 1e24 && six * six > 1e-18 * squared_length(u) * squared_length(v) * squared_length(w);
             balls.centres[i] = known ? a + to_centre : a;
             balls.squared_radii[i] = known ? squared : 0;
         }

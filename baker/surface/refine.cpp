@@ -114,12 +114,19 @@ RefineReport refine(Crust& crust, const RefineOptions& options) {
                 next.push_back(t);
                 continue;
             }
+            // The boldest point of the triangle goes first; the others may be good without it.
+            std::uint32_t boldest = kNoEdge;
+            double move = -1;
             for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
                 if (added[h] == kNoEdge) continue;
-                added[h] = added[opposite[h]] = kNoEdge;
-                centres[opposite[h] / 3] = kNoEdge;
-                next.push_back(opposite[h] / 3);
+                const Vec3 p = crust.points[edge_from(crust, h)], q = crust.points[edge_to(crust, h)];
+                const double m = squared_length(crust.points[added[h]] - (p + q) * 0.5) / squared_length(q - p);
+                if (m > move) move = m, boldest = h;
             }
+            added[boldest] = added[opposite[boldest]] = kNoEdge;
+            centres[opposite[boldest] / 3] = kNoEdge;
+            next.push_back(t);
+            next.push_back(opposite[boldest] / 3);
         }
         todo.swap(next);
     }

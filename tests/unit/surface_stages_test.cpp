@@ -234,7 +234,7 @@ TEST_CASE("duplicates do not matter") {
 }
 
 TEST_CASE("same bytes for any number of threads, concurrent triangulation included") {
-    auto points = torus_points(110000, {0, 0, 0}, 2, 0.7, false, 29);
+    auto points = torus_points(101000, {0, 0, 0}, 2, 0.7, false, 29);
     // A part on a grid: ties between cospherical points must not depend on who came first.
     for (std::size_t i = 0; i < 20000; ++i)
         for (double& x : points[i]) x = std::round(x * 256) / 256;
