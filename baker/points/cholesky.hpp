@@ -8,8 +8,8 @@
 
 namespace vsplit::bake {
 
-/// Solves a x = b for a symmetric positive definite matrix, of which the lower half is read; x replaces b and `a` is used
-/// up. False, and nothing usable, if the matrix is not positive definite.
+/// Solves a x = b for a symmetric positive definite matrix, of which the lower half is read; x replaces b and
+/// `a` is used up. False, and nothing usable, if the matrix is not positive definite.
 template <std::size_t N>
 bool solve(std::array<std::array<double, N>, N>& a, std::array<double, N>& b) {
     for (std::size_t j = 0; j < N; ++j) {

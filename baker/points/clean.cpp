@@ -5,7 +5,6 @@
 #include <tbb/parallel_for.h>
 
 #include <Eigen/Dense>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -25,8 +24,9 @@ namespace {
 
 constexpr std::size_t kFewestToMeasure = 16;
 constexpr std::size_t kFitNeighbours = 24;
-/// Noise, in spacings, from which smoothing brings the reconstruction nearer to the truth. Detail counts as noise where the
-/// samples are few: clean samples of armadillo measure 0.26 at 5,000 and 0.18 at 20,000, with 0.2 % noise 0.61.
+/// Noise, in spacings, from which smoothing brings the reconstruction nearer to the truth. Detail counts as
+/// noise where the samples are few: clean samples of armadillo measure 0.26 at 5,000 and 0.18 at 20,000, with
+/// 0.2 % noise 0.61.
 constexpr double kNoisy = 0.42;
 
 using Found = std::vector<Neighbours::Found>;
@@ -80,7 +80,8 @@ CloudMeasure measure(std::span<const Vec3> points, const Neighbours& tree) {
     std::vector<double> thirds, residuals;
     Found found;
     for (std::size_t i = 0; i < points.size(); i += step) {
-        tree.nearest(points[i], std::min(kFitNeighbours, points.size() - 1), found, static_cast<std::uint32_t>(i));
+        tree.nearest(points[i], std::min(kFitNeighbours, points.size() - 1), found,
+                     static_cast<std::uint32_t>(i));
         thirds.push_back(std::sqrt(found[2].squared_distance));
         residuals.push_back(quadric_residual(points, points[i], found));
     }
@@ -89,7 +90,9 @@ CloudMeasure measure(std::span<const Vec3> points, const Neighbours& tree) {
     return result;
 }
 
-std::array<double, 3> to_array(Vec3 p) { return {p.x, p.y, p.z}; }
+std::array<double, 3> to_array(Vec3 p) {
+    return {p.x, p.y, p.z};
+}
 
 void keep(PointCloud& cloud, const std::vector<std::uint8_t>& dropped) {
     std::size_t kept = 0;
@@ -120,7 +123,8 @@ std::size_t drop_duplicates(PointCloud& cloud) {
     return count;
 }
 
-/// The least of the three principal shares of the points' spread: 0 for a piece of a surface, 1/3 for a cloud.
+/// The least of the three principal shares of the points' spread: 0 for a piece of a surface, 1/3 for a
+/// cloud.
 double flatness(std::span<const Vec3> points, const Found& found) {
     Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
     Vec3 mean;
@@ -136,9 +140,10 @@ double flatness(std::span<const Vec3> points, const Found& found) {
     return total > 0 ? axes.eigenvalues()[0] / total : 0;
 }
 
-/// Marks points whose third neighbour is `factor` times farther than is usual around them. What is usual is asked of those
-/// among 24 neighbours that are near each other by the cloud's own measure; where there are few of these, the points are a
-/// sparse part of the surface if they lie in a sheet, and outliers if they fill space.
+/// Marks points whose third neighbour is `factor` times farther than is usual around them. What is usual is
+/// asked of those among 24 neighbours that are near each other by the cloud's own measure; where there are
+/// few of these, the points are a sparse part of the surface if they lie in a sheet, and outliers if they
+/// fill space.
 std::vector<std::uint8_t> find_outliers(std::span<const Vec3> points, const Neighbours& tree, double factor) {
     std::vector<std::uint8_t> outlier(points.size(), 0);
     if (points.size() < kFewestToMeasure) return outlier;
@@ -159,12 +164,15 @@ std::vector<std::uint8_t> find_outliers(std::span<const Vec3> points, const Neig
         std::vector<double> around;
         for (std::size_t i = range.begin(); i < range.end(); ++i) {
             if (third[i] <= usual * factor) continue;
-            tree.nearest(points[i], std::min(kWitnesses, points.size() - 1), found, static_cast<std::uint32_t>(i));
+            tree.nearest(points[i], std::min(kWitnesses, points.size() - 1), found,
+                         static_cast<std::uint32_t>(i));
             around.clear();
             for (const auto& f : found)
                 if (third[f.index] <= usual * factor) around.push_back(third[f.index]);
-            if (around.size() * 4 >= found.size()) outlier[i] = third[i] > factor * median(around);
-            else outlier[i] = flatness(points, found) > kSheet;
+            if (around.size() * 4 >= found.size())
+                outlier[i] = third[i] > factor * median(around);
+            else
+                outlier[i] = flatness(points, found) > kSheet;
         }
     });
     return outlier;
@@ -176,8 +184,12 @@ std::string sentence(const char* format, double a, double b = 0) {
     return text;
 }
 
-Error argument(const char* what) { return {ErrorCode::kArgument, what, Error::kNowhere, 0}; }
-Error cancelled() { return {ErrorCode::kCancelled, "stopped while cleaning", Error::kNowhere, 0}; }
+Error argument(const char* what) {
+    return {ErrorCode::kArgument, what, Error::kNowhere, 0};
+}
+Error cancelled() {
+    return {ErrorCode::kCancelled, "stopped while cleaning", Error::kNowhere, 0};
+}
 
 Result<CleanedCloud> clean(PointCloud cloud, const CleanOptions& options, const Progress& progress) {
     const auto stop = [&](double done) { return progress && !progress("clean", done); };
@@ -188,7 +200,8 @@ Result<CleanedCloud> clean(PointCloud cloud, const CleanOptions& options, const 
     if (options.duplicates) {
         report.duplicates = drop_duplicates(cloud);
         if (report.duplicates > 0)
-            report.steps.push_back(sentence("dropped %.0f points that repeat another's position", double(report.duplicates)));
+            report.steps.push_back(
+                sentence("dropped %.0f points that repeat another's position", double(report.duplicates)));
     }
     const Frame frame(cloud.positions);
     std::vector<Vec3> points = frame.into(cloud.positions);
@@ -201,16 +214,17 @@ Result<CleanedCloud> clean(PointCloud cloud, const CleanOptions& options, const 
             keep(cloud, outlier);
             points = frame.into(cloud.positions);
             tree = Neighbours(points);
-            report.steps.push_back(sentence("dropped %.0f outliers, farther from their neighbours than %g times what is usual there",
-                                            double(report.outliers), options.outlier_factor));
+            report.steps.push_back(sentence(
+                "dropped %.0f outliers, farther from their neighbours than %g times what is usual there",
+                double(report.outliers), options.outlier_factor));
         }
     }
     if (stop(0.3)) return cancelled();
     CloudMeasure measured = measure(points, tree);
     report.measure = {measured.spacing / frame.scale, measured.noise / frame.scale};
     if (measured.spacing > 0)
-        report.steps.push_back(sentence("measured a spacing of %.4g and noise of %.2g spacings", report.measure.spacing,
-                                        measured.noise / measured.spacing));
+        report.steps.push_back(sentence("measured a spacing of %.4g and noise of %.2g spacings",
+                                        report.measure.spacing, measured.noise / measured.spacing));
     if (options.thin == Thin::kGrid && !points.empty()) {
         const double cell = options.grid_cell > 0 ? options.grid_cell * frame.scale : 2 * measured.spacing;
         if (cell > 0) {
@@ -219,29 +233,32 @@ Result<CleanedCloud> clean(PointCloud cloud, const CleanOptions& options, const 
             report.thinned = static_cast<std::uint64_t>(std::count(dropped.begin(), dropped.end(), 1));
             keep(cloud, dropped);
             points = frame.into(cloud.positions);
-            report.steps.push_back(sentence("kept one point for each grid cell of side %.4g: dropped %.0f", cell / frame.scale,
-                                            double(report.thinned)));
+            report.steps.push_back(sentence("kept one point for each grid cell of side %.4g: dropped %.0f",
+                                            cell / frame.scale, double(report.thinned)));
         }
     } else if (options.thin == Thin::kWlop && points.size() >= kFewestToMeasure) {
         points = thin_wlop(points, options.wlop_share, measured.spacing);
         report.thinned = cloud.positions.size() - std::min(cloud.positions.size(), points.size());
         cloud = {};
         for (const Vec3& p : points) cloud.positions.push_back(to_array(frame.out_of(p)));
-        report.steps.push_back(sentence("replaced the points by %.0f evenly spread ones (WLOP); normals and colours are gone",
-                                        double(points.size())));
+        report.steps.push_back(
+            sentence("replaced the points by %.0f evenly spread ones (WLOP); normals and colours are gone",
+                     double(points.size())));
     }
     if (stop(0.6)) return cancelled();
 
     Smooth how = options.smooth;
     int neighbours = options.smooth_neighbours;
     if (how == Smooth::kAuto) {
-        how = measured.noise > kNoisy * measured.spacing && options.thin != Thin::kWlop ? Smooth::kJet : Smooth::kNone;
+        how = measured.noise > kNoisy * measured.spacing && options.thin != Thin::kWlop ? Smooth::kJet
+                                                                                        : Smooth::kNone;
         if (neighbours == 0) neighbours = measured.noise > 1.2 * measured.spacing ? 30 : 18;
     } else if (neighbours == 0) {
         neighbours = how == Smooth::kBilateral ? 24 : 18;
     }
     if (how != Smooth::kNone && points.size() >= kFewestToMeasure) {
-        neighbours = static_cast<int>(std::min<std::size_t>(static_cast<std::size_t>(neighbours), points.size() - 1));
+        neighbours =
+            static_cast<int>(std::min<std::size_t>(static_cast<std::size_t>(neighbours), points.size() - 1));
         const std::vector<Vec3> before = points;
         if (how == Smooth::kJet) {
             smooth_jet(points, neighbours);
@@ -260,9 +277,10 @@ Result<CleanedCloud> clean(PointCloud cloud, const CleanOptions& options, const 
         }
         report.mean_move = moved / static_cast<double>(points.size()) / frame.scale;
         report.smooth_neighbours = neighbours;
-        report.steps.push_back(sentence(how == Smooth::kJet ? "smoothed by a quadric through %.0f neighbours, which moved points by %.3g"
-                                                            : "smoothed bilaterally over %.0f neighbours, which moved points by %.3g",
-                                        double(neighbours), report.mean_move));
+        report.steps.push_back(sentence(
+            how == Smooth::kJet ? "smoothed by a quadric through %.0f neighbours, which moved points by %.3g"
+                                : "smoothed bilaterally over %.0f neighbours, which moved points by %.3g",
+            double(neighbours), report.mean_move));
     } else if (options.smooth == Smooth::kAuto && measured.spacing > 0) {
         report.steps.push_back("left the points where they are: too little noise to smooth");
     }
@@ -282,27 +300,33 @@ CloudMeasure measure_points(std::span<const std::array<double, 3>> positions) {
 }
 
 Result<CleanedCloud> clean_points(PointCloud cloud, const CleanOptions& options, const Progress& progress) {
-    if (!(options.outlier_factor >= 0) || !(options.grid_cell >= 0)) return argument("a factor of cleaning is negative");
-    if (!(options.wlop_share > 0 && options.wlop_share <= 1)) return argument("WLOP can keep a share above 0 and up to 1");
+    if (!(options.outlier_factor >= 0) || !(options.grid_cell >= 0))
+        return argument("a factor of cleaning is negative");
+    if (!(options.wlop_share > 0 && options.wlop_share <= 1))
+        return argument("WLOP can keep a share above 0 and up to 1");
     if (options.smooth_neighbours != 0 && (options.smooth_neighbours < 8 || options.smooth_neighbours > 1000))
         return argument("smoothing takes 8 to 1000 neighbours");
     if (options.threads < 0) return argument("the number of threads is negative");
-    if (cloud.positions.size() > 0xFFFFFFF0u) return Error{ErrorCode::kLimit, "more points than fit 32-bit indices", Error::kNowhere, 0};
+    if (cloud.positions.size() > 0xFFFFFFF0u)
+        return Error{ErrorCode::kLimit, "more points than fit 32-bit indices", Error::kNowhere, 0};
     if ((!cloud.normals.empty() && cloud.normals.size() != cloud.positions.size()) ||
         (!cloud.colours.empty() && cloud.colours.size() != cloud.positions.size()))
         return argument("there are not as many normals or colours as points");
     for (const auto& p : cloud.positions)
-        if (!std::isfinite(p[0]) || !std::isfinite(p[1]) || !std::isfinite(p[2])) return argument("a position is not finite");
+        if (!std::isfinite(p[0]) || !std::isfinite(p[1]) || !std::isfinite(p[2]))
+            return argument("a position is not finite");
     // CGAL's filters check their input by throwing; nothing may leave this room that way.
     try {
         std::unique_ptr<tbb::global_control> limit;
         if (options.threads > 0)
-            limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism, options.threads);
+            limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
+                                                          options.threads);
         return clean(std::move(cloud), options, progress);
     } catch (const std::bad_alloc&) {
         return Error{ErrorCode::kLimit, "not enough memory to clean the points", Error::kNowhere, 0};
     } catch (const std::exception& e) {
-        return Error{ErrorCode::kArgument, std::string("the points cannot be filtered: ") + e.what(), Error::kNowhere, 0};
+        return Error{ErrorCode::kArgument, std::string("the points cannot be filtered: ") + e.what(),
+                     Error::kNowhere, 0};
     }
 }
 

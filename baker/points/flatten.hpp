@@ -14,7 +14,8 @@ namespace vsplit::bake {
 inline Corners canonical(Corners c) {
     // Swaps come in pairs, so that the orientation stays.
     const auto bring = [&c](std::size_t to) {
-        const auto from = static_cast<std::size_t>(std::min_element(c.begin() + static_cast<std::ptrdiff_t>(to), c.end()) - c.begin());
+        const auto from = static_cast<std::size_t>(
+            std::min_element(c.begin() + static_cast<std::ptrdiff_t>(to), c.end()) - c.begin());
         if (from == to) return;
         std::swap(c[to], c[from]);
         std::swap(c[2], c[3]);
@@ -24,7 +25,8 @@ inline Corners canonical(Corners c) {
     return c;
 }
 
-/// Cells and neighbours of a CGAL triangulation whose vertices and cells carry a 32-bit info; vertices' are set.
+/// Cells and neighbours of a CGAL triangulation whose vertices and cells carry a 32-bit info; vertices' are
+/// set.
 template <class Triangulation>
 void flatten(const Triangulation& triangulation, std::size_t vertices, std::vector<Corners>& cells,
              std::vector<Corners>& neighbours) {
@@ -40,7 +42,8 @@ void flatten(const Triangulation& triangulation, std::size_t vertices, std::vect
         c->info() = kNoCell;
         if (triangulation.is_infinite(c)) continue;
         handles.push_back(c);
-        unsorted.push_back(canonical({c->vertex(0)->info(), c->vertex(1)->info(), c->vertex(2)->info(), c->vertex(3)->info()}));
+        unsorted.push_back(canonical(
+            {c->vertex(0)->info(), c->vertex(1)->info(), c->vertex(2)->info(), c->vertex(3)->info()}));
         ++starts[unsorted.back()[0] + 1];
     }
     for (std::size_t i = 1; i < starts.size(); ++i) starts[i] += starts[i - 1];
@@ -63,7 +66,8 @@ void flatten(const Triangulation& triangulation, std::size_t vertices, std::vect
         for (int k = 0; k < 4; ++k) {
             const std::uint32_t v = c->vertex(k)->info();
             const Corners& corners = cells[i];
-            const auto slot = static_cast<std::size_t>(std::find(corners.begin(), corners.end(), v) - corners.begin());
+            const auto slot =
+                static_cast<std::size_t>(std::find(corners.begin(), corners.end(), v) - corners.begin());
             neighbours[i][slot] = c->neighbor(k)->info();
         }
     }

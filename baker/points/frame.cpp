@@ -60,11 +60,13 @@ Frame::Frame(std::span<const std::array<double, 3>> positions) {
     if (positions.empty()) return;
     std::array<double, 3> low = positions[0], high = positions[0];
     for (const auto& p : positions)
-        for (std::size_t k = 0; k < 3; ++k) low[k] = std::min(low[k], p[k]), high[k] = std::max(high[k], p[k]);
+        for (std::size_t k = 0; k < 3; ++k)
+            low[k] = std::min(low[k], p[k]), high[k] = std::max(high[k], p[k]);
     double side = 0;
     for (std::size_t k = 0; k < 3; ++k) side = std::max(side, high[k] / 2 - low[k] / 2);
     origin = {low[0] / 2 + high[0] / 2, low[1] / 2 + high[1] / 2, low[2] / 2 + high[2] / 2};
-    // A power of two rounds nothing. Outside this range the points differ by less, or more, than can be told apart.
+    // A power of two rounds nothing. Outside this range the points differ by less, or more, than can be told
+    // apart.
     if (side > 0) scale = std::ldexp(1.0, -std::clamp(std::ilogb(side), -1000, 1000));
 }
 

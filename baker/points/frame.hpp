@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The vsplit authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The working frame: centred, and scaled by a power of two to a size near 1, where neither squares overflow nor
-// differences of large coordinates cancel.
+// The working frame: centred, and scaled by a power of two to a size near 1, where neither squares overflow
+// nor differences of large coordinates cancel.
 #pragma once
 
 #include <array>

@@ -11,7 +11,9 @@ namespace {
 
 constexpr std::uint32_t kLeaf = 12;
 
-double along(const Vec3& p, int axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
+double along(const Vec3& p, int axis) {
+    return axis == 0 ? p.x : axis == 1 ? p.y : p.z;
+}
 
 }  // namespace
 
@@ -67,11 +69,13 @@ void Neighbours::nearest(Vec3 place, std::size_t k, std::vector<Found>& found, s
         while (nodes_[visit.node].count == 0) {
             const Node& node = nodes_[visit.node];
             const double d = along(place, node.axis) - node.split;
-            const std::uint32_t near = d < 0 ? visit.node + 1 : node.first, far = d < 0 ? node.first : visit.node + 1;
+            const std::uint32_t near = d < 0 ? visit.node + 1 : node.first,
+                                far = d < 0 ? node.first : visit.node + 1;
             Vec3 offset = visit.offset;
             (node.axis == 0 ? offset.x : node.axis == 1 ? offset.y : offset.z) = d;
             const double squared = squared_length(offset);
-            if (found.size() < k || squared <= found.back().squared_distance) stack[depth++] = {far, squared, offset};
+            if (found.size() < k || squared <= found.back().squared_distance)
+                stack[depth++] = {far, squared, offset};
             visit.node = near;
         }
         const Node& leaf = nodes_[visit.node];

@@ -26,12 +26,14 @@ class Neighbours {
         }
     };
     /// The `k` points nearest to `place`, nearest first, fewer if there are fewer. `skip` is left out.
-    void nearest(Vec3 place, std::size_t k, std::vector<Found>& found, std::uint32_t skip = 0xFFFFFFFFu) const;
+    void nearest(Vec3 place, std::size_t k, std::vector<Found>& found,
+                 std::uint32_t skip = 0xFFFFFFFFu) const;
 
   private:
     struct Node {
         double split;
-        std::uint32_t first, count;  ///< Points of a leaf; an inner node has count 0 and its second child at `first`.
+        std::uint32_t first,
+            count;  ///< Points of a leaf; an inner node has count 0 and its second child at `first`.
         std::uint8_t axis;
     };
     std::uint32_t build(std::span<const Vec3> points, std::uint32_t first, std::uint32_t last);

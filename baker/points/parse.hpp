@@ -25,7 +25,8 @@ inline Error error_at_offset(ErrorCode code, std::string message, std::uint64_t 
     return {code, std::move(message), offset, 0};
 }
 
-/// A number as text; nothing if `word` is not one number and nothing else. Numbers too large for a double are infinite.
+/// A number as text; nothing if `word` is not one number and nothing else. Numbers too large for a double are
+/// infinite.
 std::optional<double> parse_number(std::string_view word);
 /// A count: decimal digits only, below 2^63.
 std::optional<std::uint64_t> parse_count(std::string_view word);

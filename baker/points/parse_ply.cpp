@@ -33,10 +33,12 @@ struct Header {
 
 std::optional<Scalar> scalar_named(std::string_view name) {
     constexpr std::pair<std::string_view, Scalar> names[] = {
-        {"char", Scalar::kI8},    {"int8", Scalar::kI8},     {"uchar", Scalar::kU8},  {"uint8", Scalar::kU8},
-        {"short", Scalar::kI16},  {"int16", Scalar::kI16},   {"ushort", Scalar::kU16}, {"uint16", Scalar::kU16},
-        {"int", Scalar::kI32},    {"int32", Scalar::kI32},   {"uint", Scalar::kU32},  {"uint32", Scalar::kU32},
-        {"float", Scalar::kF32},  {"float32", Scalar::kF32}, {"double", Scalar::kF64}, {"float64", Scalar::kF64},
+        {"char", Scalar::kI8},     {"int8", Scalar::kI8},     {"uchar", Scalar::kU8},
+        {"uint8", Scalar::kU8},    {"short", Scalar::kI16},   {"int16", Scalar::kI16},
+        {"ushort", Scalar::kU16},  {"uint16", Scalar::kU16},  {"int", Scalar::kI32},
+        {"int32", Scalar::kI32},   {"uint", Scalar::kU32},    {"uint32", Scalar::kU32},
+        {"float", Scalar::kF32},   {"float32", Scalar::kF32}, {"double", Scalar::kF64},
+        {"float64", Scalar::kF64},
     };
     for (const auto& [text, type] : names)
         if (text == name) return type;
@@ -49,17 +51,24 @@ Result<Header> parse_header(std::string_view text) {
     std::string_view line;
     bool format = false;
     while (lines.next(line)) {
-        const auto bad = [&](const char* what) { return error_at_line(ErrorCode::kMalformed, what, lines.number()); };
+        const auto bad = [&](const char* what) {
+            return error_at_line(ErrorCode::kMalformed, what, lines.number());
+        };
         if (lines.number() > 1000) return bad("the PLY header does not end");
         std::string_view rest = line;
         const std::string_view word = next_word(rest);
-        if (word.empty() || word == "comment" || word == "obj_info" || (word == "ply" && lines.number() == 1)) continue;
+        if (word.empty() || word == "comment" || word == "obj_info" || (word == "ply" && lines.number() == 1))
+            continue;
         if (word == "format") {
             const std::string_view name = next_word(rest);
-            if (name == "ascii") header.encoding = Encoding::kText;
-            else if (name == "binary_little_endian") header.encoding = Encoding::kLittle;
-            else if (name == "binary_big_endian") header.encoding = Encoding::kBig;
-            else return bad("unknown PLY format");
+            if (name == "ascii")
+                header.encoding = Encoding::kText;
+            else if (name == "binary_little_endian")
+                header.encoding = Encoding::kLittle;
+            else if (name == "binary_big_endian")
+                header.encoding = Encoding::kBig;
+            else
+                return bad("unknown PLY format");
             format = true;
         } else if (word == "element") {
             Element element;
@@ -75,7 +84,8 @@ Result<Header> parse_header(std::string_view text) {
             property.list = type == "list";
             if (property.list) {
                 const std::optional<Scalar> count_type = scalar_named(next_word(rest));
-                if (!count_type || *count_type == Scalar::kF32 || *count_type == Scalar::kF64) return bad("a list counted by an unknown type");
+                if (!count_type || *count_type == Scalar::kF32 || *count_type == Scalar::kF64)
+                    return bad("a list counted by an unknown type");
                 property.count_type = *count_type;
                 type = next_word(rest);
             }
@@ -101,12 +111,14 @@ Columns name_columns(const Element& vertex) {
     const auto find = [&](std::initializer_list<const char*> names) {
         for (const char* name : names)
             for (std::size_t i = 0; i < vertex.properties.size(); ++i)
-                if (!vertex.properties[i].list && vertex.properties[i].name == name) return static_cast<int>(i);
+                if (!vertex.properties[i].list && vertex.properties[i].name == name)
+                    return static_cast<int>(i);
         return -1;
     };
     columns.position = {find({"x"}), find({"y"}), find({"z"})};
     columns.normal = {find({"nx", "normal_x"}), find({"ny", "normal_y"}), find({"nz", "normal_z"})};
-    columns.colour = {find({"red", "r", "diffuse_red"}), find({"green", "g", "diffuse_green"}), find({"blue", "b", "diffuse_blue"})};
+    columns.colour = {find({"red", "r", "diffuse_red"}), find({"green", "g", "diffuse_green"}),
+                      find({"blue", "b", "diffuse_blue"})};
     return columns;
 }
 
@@ -129,24 +141,30 @@ Result<PointFile> parse_ply_points(std::span<const std::byte> bytes, const Point
     file.report.format = header.encoding == Encoding::kText     ? "PLY (ascii)"
                          : header.encoding == Encoding::kLittle ? "PLY (binary little endian)"
                                                                 : "PLY (binary big endian)";
-    const auto vertex = std::find_if(header.elements.begin(), header.elements.end(), [](const Element& e) { return e.name == "vertex"; });
+    const auto vertex = std::find_if(header.elements.begin(), header.elements.end(),
+                                     [](const Element& e) { return e.name == "vertex"; });
     if (vertex == header.elements.end() || vertex->count == 0)
         return error_at_line(ErrorCode::kMalformed, "the PLY file holds no vertices", header.lines);
     const Columns columns = name_columns(*vertex);
     if (columns.position[0] < 0 || columns.position[1] < 0 || columns.position[2] < 0)
         return error_at_line(ErrorCode::kMalformed, "the vertices have no x, y and z", header.lines);
     if (vertex->count > options.max_points)
-        return error_at_line(ErrorCode::kLimit, "more than " + std::to_string(options.max_points) + " points", header.lines);
+        return error_at_line(ErrorCode::kLimit, "more than " + std::to_string(options.max_points) + " points",
+                             header.lines);
     std::uint64_t room = bytes.size() - header.end;
     for (const Element& e : header.elements) {
         const std::size_t least = least_size(e, header.encoding);
         if (least > 0 && e.count > (room + 1) / least)
-            return error_at_offset(ErrorCode::kTruncated, "the file is too short for the " + std::to_string(e.count) + " records of \"" + e.name + "\"", bytes.size());
+            return error_at_offset(
+                ErrorCode::kTruncated,
+                "the file is too short for the " + std::to_string(e.count) + " records of \"" + e.name + "\"",
+                bytes.size());
         if (e.name == "vertex") break;
     }
     double colour_scale = 1;
     file.report.points_in = vertex->count;
-    file.report.columns_ignored = vertex->properties.size() - 3 - (columns.has_normal() ? 3u : 0u) - (columns.has_colour() ? 3u : 0u);
+    file.report.columns_ignored =
+        vertex->properties.size() - 3 - (columns.has_normal() ? 3u : 0u) - (columns.has_colour() ? 3u : 0u);
     if (columns.has_colour()) {
         const Scalar type = vertex->properties[static_cast<std::size_t>(columns.colour[0])].type;
         if (type == Scalar::kF32 || type == Scalar::kF64) colour_scale = 255;
@@ -163,13 +181,17 @@ Result<PointFile> parse_ply_points(std::span<const std::byte> bytes, const Point
                 std::string_view rest;
                 do {
                     if (!lines.next(line))
-                        return error_at_line(ErrorCode::kTruncated, "the file ends after " + std::to_string(i) + " of " + std::to_string(e.count) + " records of \"" + e.name + "\"",
+                        return error_at_line(ErrorCode::kTruncated,
+                                             "the file ends after " + std::to_string(i) + " of " +
+                                                 std::to_string(e.count) + " records of \"" + e.name + "\"",
                                              header.lines + lines.number());
                     rest = line;
                 } while (next_word(rest).empty());
                 if (e.name != "vertex") continue;
                 rest = line;
-                const auto bad = [&](const char* what) { return error_at_line(ErrorCode::kMalformed, what, header.lines + lines.number()); };
+                const auto bad = [&](const char* what) {
+                    return error_at_line(ErrorCode::kMalformed, what, header.lines + lines.number());
+                };
                 for (std::size_t p = 0; p < e.properties.size(); ++p) {
                     const std::string_view word = next_word(rest);
                     if (word.empty()) return bad("the line has fewer columns than the vertex has properties");
@@ -198,18 +220,25 @@ Result<PointFile> parse_ply_points(std::span<const std::byte> bytes, const Point
             for (std::size_t p = 0; p < e.properties.size(); ++p) {
                 const Property& property = e.properties[p];
                 std::uint64_t size = scalar_size(property.list ? property.count_type : property.type);
-                if (!fits(size)) return error_at_offset(ErrorCode::kTruncated, "the file ends inside \"" + e.name + "\" record " + std::to_string(i), at);
-                const double value = read_scalar(bytes.data() + at, property.list ? property.count_type : property.type, reversed);
+                if (!fits(size))
+                    return error_at_offset(
+                        ErrorCode::kTruncated,
+                        "the file ends inside \"" + e.name + "\" record " + std::to_string(i), at);
+                const double value = read_scalar(
+                    bytes.data() + at, property.list ? property.count_type : property.type, reversed);
                 at += size;
                 if (property.list) {
-                    if (value < 0) return error_at_offset(ErrorCode::kMalformed, "a list of negative length", at - size);
+                    if (value < 0)
+                        return error_at_offset(ErrorCode::kMalformed, "a list of negative length", at - size);
                     size = static_cast<std::uint64_t>(value) * scalar_size(property.type);
-                    if (!fits(size)) return error_at_offset(ErrorCode::kTruncated, "the file ends inside a list", at);
+                    if (!fits(size))
+                        return error_at_offset(ErrorCode::kTruncated, "the file ends inside a list", at);
                     at += size;
                 } else if (e.name == "vertex") {
                     record[p] = value;
                 }
-                if (e.name == "vertex" && p + 1 == e.properties.size()) add_point(file, record, columns, colour_scale);
+                if (e.name == "vertex" && p + 1 == e.properties.size())
+                    add_point(file, record, columns, colour_scale);
             }
         if (e.name == "vertex") break;
     }

@@ -16,7 +16,8 @@ std::optional<double> parse_number(std::string_view word) {
     if (status == std::errc::result_out_of_range) {
         // from_chars tells neither overflow from underflow nor the sign.
         const std::size_t mantissa_end = word.find_first_of("eE");
-        const bool tiny = mantissa_end != std::string_view::npos && mantissa_end + 1 < word.size() && word[mantissa_end + 1] == '-';
+        const bool tiny = mantissa_end != std::string_view::npos && mantissa_end + 1 < word.size() &&
+                          word[mantissa_end + 1] == '-';
         return tiny ? 0 : std::numeric_limits<double>::infinity();
     }
     if (status != std::errc()) return std::nullopt;
@@ -26,7 +27,8 @@ std::optional<double> parse_number(std::string_view word) {
 std::optional<std::uint64_t> parse_count(std::string_view word) {
     std::int64_t value = 0;
     const auto [end, status] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (word.empty() || status != std::errc() || end != word.data() + word.size() || value < 0) return std::nullopt;
+    if (word.empty() || status != std::errc() || end != word.data() + word.size() || value < 0)
+        return std::nullopt;
     return static_cast<std::uint64_t>(value);
 }
 
@@ -43,7 +45,8 @@ bool Lines::next(std::string_view& line) {
 
 std::string_view next_word(std::string_view& rest, std::string_view separators) {
     const auto separates = [&](char c) {
-        return c == ' ' || c == '\t' || c == '\v' || c == '\f' || separators.find(c) != std::string_view::npos;
+        return c == ' ' || c == '\t' || c == '\v' || c == '\f' ||
+               separators.find(c) != std::string_view::npos;
     };
     std::size_t first = 0;
     while (first < rest.size() && separates(rest[first])) ++first;
@@ -56,10 +59,20 @@ std::string_view next_word(std::string_view& rest, std::string_view separators) 
 
 std::size_t scalar_size(Scalar type) {
     switch (type) {
-        case Scalar::kI8: case Scalar::kU8: return 1;
-        case Scalar::kI16: case Scalar::kU16: return 2;
-        case Scalar::kI32: case Scalar::kU32: case Scalar::kF32: return 4;
-        case Scalar::kI64: case Scalar::kU64: case Scalar::kF64: return 8;
+        case Scalar::kI8:
+        case Scalar::kU8:
+            return 1;
+        case Scalar::kI16:
+        case Scalar::kU16:
+            return 2;
+        case Scalar::kI32:
+        case Scalar::kU32:
+        case Scalar::kF32:
+            return 4;
+        case Scalar::kI64:
+        case Scalar::kU64:
+        case Scalar::kF64:
+            return 8;
     }
     return 1;
 }
@@ -80,23 +93,34 @@ double read_as(const std::byte* at, bool reversed) {
 
 double read_scalar(const std::byte* at, Scalar type, bool reversed) {
     switch (type) {
-        case Scalar::kI8: return read_as<std::int8_t>(at, reversed);
-        case Scalar::kU8: return read_as<std::uint8_t>(at, reversed);
-        case Scalar::kI16: return read_as<std::int16_t>(at, reversed);
-        case Scalar::kU16: return read_as<std::uint16_t>(at, reversed);
-        case Scalar::kI32: return read_as<std::int32_t>(at, reversed);
-        case Scalar::kU32: return read_as<std::uint32_t>(at, reversed);
-        case Scalar::kI64: return read_as<std::int64_t>(at, reversed);
-        case Scalar::kU64: return read_as<std::uint64_t>(at, reversed);
-        case Scalar::kF32: return read_as<float>(at, reversed);
-        case Scalar::kF64: return read_as<double>(at, reversed);
+        case Scalar::kI8:
+            return read_as<std::int8_t>(at, reversed);
+        case Scalar::kU8:
+            return read_as<std::uint8_t>(at, reversed);
+        case Scalar::kI16:
+            return read_as<std::int16_t>(at, reversed);
+        case Scalar::kU16:
+            return read_as<std::uint16_t>(at, reversed);
+        case Scalar::kI32:
+            return read_as<std::int32_t>(at, reversed);
+        case Scalar::kU32:
+            return read_as<std::uint32_t>(at, reversed);
+        case Scalar::kI64:
+            return read_as<std::int64_t>(at, reversed);
+        case Scalar::kU64:
+            return read_as<std::uint64_t>(at, reversed);
+        case Scalar::kF32:
+            return read_as<float>(at, reversed);
+        case Scalar::kF64:
+            return read_as<double>(at, reversed);
     }
     return 0;
 }
 
 void add_point(PointFile& file, std::span<const double> record, const Columns& columns, double colour_scale) {
     const auto value = [&](int column) { return record[static_cast<std::size_t>(column)]; };
-    const std::array<double, 3> p{value(columns.position[0]), value(columns.position[1]), value(columns.position[2])};
+    const std::array<double, 3> p{value(columns.position[0]), value(columns.position[1]),
+                                  value(columns.position[2])};
     if (!std::isfinite(p[0]) || !std::isfinite(p[1]) || !std::isfinite(p[2])) {
         ++file.report.points_dropped_non_finite;
         return;
@@ -120,7 +144,8 @@ void add_point(PointFile& file, std::span<const double> record, const Columns& c
     }
 }
 
-Result<PointFile> parse_points(std::span<const std::byte> bytes, std::string_view extension, const PointReadOptions& options) {
+Result<PointFile> parse_points(std::span<const std::byte> bytes, std::string_view extension,
+                               const PointReadOptions& options) {
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     if (bytes.empty()) return error_at_offset(ErrorCode::kTruncated, "the file is empty", 0);
     if (text.starts_with("ply") && (text.size() == 3 || text[3] == '\n' || text[3] == '\r' || text[3] == ' '))
@@ -134,7 +159,8 @@ Result<PointFile> parse_points(std::span<const std::byte> bytes, std::string_vie
     if (lower == ".ply") return error_at_offset(ErrorCode::kMalformed, "a PLY file starts with \"ply\"", 0);
     if (lower == ".pcd") return parse_pcd_points(bytes, options);
     if (text.starts_with("LASF"))
-        return error_at_offset(ErrorCode::kUnsupported, "LAS files are not read; convert the file to PLY or text", 0);
+        return error_at_offset(ErrorCode::kUnsupported,
+                               "LAS files are not read; convert the file to PLY or text", 0);
     return parse_text_points(text, options);
 }
 

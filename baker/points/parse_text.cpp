@@ -11,9 +11,12 @@ constexpr std::size_t kMostColumns = 64;
 constexpr std::size_t kLinesToGuessFrom = 200;
 constexpr std::string_view kSeparators = ",;";
 
-bool is_comment(std::string_view word) { return word[0] == '#' || word.starts_with("//") || word[0] == '%' || word[0] == '!'; }
+bool is_comment(std::string_view word) {
+    return word[0] == '#' || word.starts_with("//") || word[0] == '%' || word[0] == '!';
+}
 
-/// Splits a line into numbers; columns from the fourth on may be words (read as NaN). False, with the column, otherwise.
+/// Splits a line into numbers; columns from the fourth on may be words (read as NaN). False, with the column,
+/// otherwise.
 bool split(std::string_view line, std::vector<double>& record, std::size_t& bad_column) {
     record.clear();
     for (std::string_view word = next_word(line, kSeparators); !word.empty() && record.size() < kMostColumns;
@@ -29,7 +32,8 @@ bool split(std::string_view line, std::vector<double>& record, std::size_t& bad_
     return true;
 }
 
-/// Which of the columns beyond the coordinates are a normal, and which a colour, by the values of the first lines.
+/// Which of the columns beyond the coordinates are a normal, and which a colour, by the values of the first
+/// lines.
 Columns guess_columns(std::span<const std::vector<double>> records) {
     Columns columns;
     columns.position = {0, 1, 2};
@@ -82,7 +86,8 @@ Result<PointFile> parse_text_points(std::string_view text, const PointReadOption
     std::size_t width = 0;
     const auto start = [&] {
         columns = guess_columns(first_records);
-        file.report.columns_ignored = width - 3 - (columns.has_normal() ? 3u : 0u) - (columns.has_colour() ? 3u : 0u);
+        file.report.columns_ignored =
+            width - 3 - (columns.has_normal() ? 3u : 0u) - (columns.has_colour() ? 3u : 0u);
         for (const auto& r : first_records) add_point(file, r, columns, 1);
         known = true;
     };
@@ -101,7 +106,8 @@ Result<PointFile> parse_text_points(std::string_view text, const PointReadOption
                 ++file.report.lines_skipped;
                 continue;
             }
-            return error_at_line(ErrorCode::kMalformed, "column " + std::to_string(bad + 1) + " is not a number", lines.number());
+            return error_at_line(ErrorCode::kMalformed,
+                                 "column " + std::to_string(bad + 1) + " is not a number", lines.number());
         }
         if (record.size() == 1 && parse_count(word)) {
             // A count starts the file, or the next scan of a .pts file.
@@ -111,13 +117,19 @@ Result<PointFile> parse_text_points(std::string_view text, const PointReadOption
             continue;
         }
         if (record.size() < 3)
-            return error_at_line(ErrorCode::kMalformed, "a point needs three numbers, here are " + std::to_string(record.size()), lines.number());
+            return error_at_line(ErrorCode::kMalformed,
+                                 "a point needs three numbers, here are " + std::to_string(record.size()),
+                                 lines.number());
         if (file.report.points_in == 0) width = record.size();
         if (record.size() < width)
-            return error_at_line(ErrorCode::kMalformed, "the line has " + std::to_string(record.size()) + " columns, the first point has " + std::to_string(width),
+            return error_at_line(ErrorCode::kMalformed,
+                                 "the line has " + std::to_string(record.size()) +
+                                     " columns, the first point has " + std::to_string(width),
                                  lines.number());
         if (++file.report.points_in > options.max_points)
-            return error_at_line(ErrorCode::kLimit, "more than " + std::to_string(options.max_points) + " points", lines.number());
+            return error_at_line(ErrorCode::kLimit,
+                                 "more than " + std::to_string(options.max_points) + " points",
+                                 lines.number());
         if (known) {
             add_point(file, record, columns, 1);
         } else {
@@ -125,10 +137,13 @@ Result<PointFile> parse_text_points(std::string_view text, const PointReadOption
             if (first_records.size() == kLinesToGuessFrom) start();
         }
     }
-    if (file.report.points_in == 0) return error_at_line(ErrorCode::kMalformed, "the file holds no point", lines.number());
+    if (file.report.points_in == 0)
+        return error_at_line(ErrorCode::kMalformed, "the file holds no point", lines.number());
     if (!known) start();
     if (file.report.points_in < announced)
-        return error_at_line(ErrorCode::kTruncated, std::to_string(announced) + " points are announced, " + std::to_string(file.report.points_in) + " follow",
+        return error_at_line(ErrorCode::kTruncated,
+                             std::to_string(announced) + " points are announced, " +
+                                 std::to_string(file.report.points_in) + " follow",
                              count_line);
     return file;
 }

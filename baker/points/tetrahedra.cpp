@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "points/tetrahedra.hpp"
 
-#include "points/flatten.hpp"
-
 #include <CGAL/Delaunay_triangulation_3.h>
 #include <CGAL/Delaunay_triangulation_cell_base_3.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
@@ -13,18 +11,22 @@
 #include <algorithm>
 #include <numeric>
 
+#include "points/flatten.hpp"
+
 namespace vsplit::bake {
 namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using VertexBase = CGAL::Triangulation_vertex_base_with_info_3<std::uint32_t, Kernel>;
-using CellBase = CGAL::Triangulation_cell_base_with_info_3<std::uint32_t, Kernel, CGAL::Delaunay_triangulation_cell_base_3<Kernel>>;
-using Sequential = CGAL::Delaunay_triangulation_3<Kernel, CGAL::Triangulation_data_structure_3<VertexBase, CellBase>>;
+using CellBase = CGAL::Triangulation_cell_base_with_info_3<std::uint32_t, Kernel,
+                                                           CGAL::Delaunay_triangulation_cell_base_3<Kernel>>;
+using Sequential =
+    CGAL::Delaunay_triangulation_3<Kernel, CGAL::Triangulation_data_structure_3<VertexBase, CellBase>>;
 using Concurrent = CGAL::Delaunay_triangulation_3<
     Kernel, CGAL::Triangulation_data_structure_3<VertexBase, CellBase, CGAL::Parallel_tag>>;
 
-/// Rounds of growing size, each along the curve: the biased randomised insertion order of Amenta, Choi and Rote,
-/// "Incremental constructions con BRIO" (2003), with a hash of the index for a die.
+/// Rounds of growing size, each along the curve: the biased randomised insertion order of Amenta, Choi and
+/// Rote, "Incremental constructions con BRIO" (2003), with a hash of the index for a die.
 std::vector<std::uint32_t> insertion_order(std::size_t count) {
     std::vector<std::vector<std::uint32_t>> rounds;
     for (std::uint32_t i = 0; i < count; ++i) {
@@ -39,7 +41,8 @@ std::vector<std::uint32_t> insertion_order(std::size_t count) {
     }
     std::vector<std::uint32_t> order;
     order.reserve(count);
-    for (std::size_t r = rounds.size(); r-- > 0;) order.insert(order.end(), rounds[r].begin(), rounds[r].end());
+    for (std::size_t r = rounds.size(); r-- > 0;)
+        order.insert(order.end(), rounds[r].begin(), rounds[r].end());
     return order;
 }
 

@@ -17,11 +17,13 @@ namespace {
 Vec3 circumcentre(const Tetrahedra& t, const Corners& c) {
     const Vec3 a = t.points[c[0]], u = t.points[c[1]] - a, v = t.points[c[2]] - a, w = t.points[c[3]] - a;
     const Vec3 vw = cross(v, w);
-    return a + (vw * squared_length(u) + cross(w, u) * squared_length(v) + cross(u, v) * squared_length(w)) * (0.5 / dot(u, vw));
+    return a + (vw * squared_length(u) + cross(w, u) * squared_length(v) + cross(u, v) * squared_length(w)) *
+                   (0.5 / dot(u, vw));
 }
 
-/// Six times the volume of the part of a's Voronoi cell that lies in one cell of the triangulation, signed: the three
-/// tetrahedra pairs from a over edge, facet and cell centres. Signed parts add up also where a centre lies outside.
+/// Six times the volume of the part of a's Voronoi cell that lies in one cell of the triangulation, signed:
+/// the three tetrahedra pairs from a over edge, facet and cell centres. Signed parts add up also where a
+/// centre lies outside.
 struct Volumes {
     const Tetrahedra& t;
     std::vector<double> six;
@@ -38,7 +40,8 @@ struct Volumes {
                 for (int k = 0; k < 4; ++k)
                     if (k != i && k != j) others[n++] = k;
                 const Vec3 q = t.points[c[static_cast<std::size_t>(j)]];
-                const Vec3 r = t.points[c[static_cast<std::size_t>(others[0])]], s = t.points[c[static_cast<std::size_t>(others[1])]];
+                const Vec3 r = t.points[c[static_cast<std::size_t>(others[0])]],
+                           s = t.points[c[static_cast<std::size_t>(others[1])]];
                 const Vec3 middle = (q - p) * 0.5;
                 const double sign = dot(q - p, cross(r - p, s - p)) > 0 ? 1 : -1;
                 sum += sign * dot(middle, cross(facet_centre(p, q, r), centre - p));
@@ -50,20 +53,24 @@ struct Volumes {
     /// Centre of the circle through p, q, r, seen from p.
     static Vec3 facet_centre(Vec3 p, Vec3 q, Vec3 r) {
         const Vec3 u = q - p, v = r - p, n = cross(u, v);
-        return (cross(n, u) * squared_length(v) + cross(v, n) * squared_length(u)) * (0.5 / squared_length(n));
+        return (cross(n, u) * squared_length(v) + cross(v, n) * squared_length(u)) *
+               (0.5 / squared_length(n));
     }
 };
 
-Result<VoronoiCells> tessellate(std::span<const std::array<double, 3>> positions, int threads, const Progress& progress) {
+Result<VoronoiCells> tessellate(std::span<const std::array<double, 3>> positions, int threads,
+                                const Progress& progress) {
     const auto stop = [&](double done) { return progress && !progress("voronoi", done); };
     const Error cancelled{ErrorCode::kCancelled, "stopped in the Voronoi tessellation", Error::kNowhere, 0};
     if (stop(0)) return cancelled;
     const Frame frame(positions);
     const std::vector<Vec3> given = frame.into(positions);
     const UniquePoints unique = unique_points(given);
-    if (unique.points.size() < 4) return Error{ErrorCode::kArgument, "fewer than four different points", Error::kNowhere, 0};
+    if (unique.points.size() < 4)
+        return Error{ErrorCode::kArgument, "fewer than four different points", Error::kNowhere, 0};
     const Tetrahedra t = tetrahedralise(unique.points, unique.points.size(), threads);
-    if (t.cells.empty()) return Error{ErrorCode::kArgument, "all points lie in one plane", Error::kNowhere, 0};
+    if (t.cells.empty())
+        return Error{ErrorCode::kArgument, "all points lie in one plane", Error::kNowhere, 0};
     if (stop(0.7)) return cancelled;
 
     const std::size_t count = unique.points.size();
@@ -117,9 +124,11 @@ Result<VoronoiCells> tessellate(std::span<const std::array<double, 3>> positions
 
 }  // namespace
 
-Result<VoronoiCells> voronoi_cells(std::span<const std::array<double, 3>> positions, int threads, const Progress& progress) {
+Result<VoronoiCells> voronoi_cells(std::span<const std::array<double, 3>> positions, int threads,
+                                   const Progress& progress) {
     constexpr std::size_t kMost = 100'000'000;
-    if (positions.size() > kMost) return Error{ErrorCode::kLimit, "more than 100 million points", Error::kNowhere, 0};
+    if (positions.size() > kMost)
+        return Error{ErrorCode::kLimit, "more than 100 million points", Error::kNowhere, 0};
     for (const auto& p : positions)
         if (!std::isfinite(p[0]) || !std::isfinite(p[1]) || !std::isfinite(p[2]))
             return Error{ErrorCode::kArgument, "a position is not finite", Error::kNowhere, 0};

@@ -18,7 +18,8 @@ std::uint32_t slot_of(const Corners& corners, std::uint32_t value) {
     return static_cast<std::uint32_t>(std::find(corners.begin(), corners.end(), value) - corners.begin());
 }
 
-/// The boundary's facets, seen from their inside cells, each half-edge paired through the inside cells around it.
+/// The boundary's facets, seen from their inside cells, each half-edge paired through the inside cells around
+/// it.
 struct Facets {
     std::vector<Facet> facets;
     std::vector<std::uint32_t> starts;    ///< First facet of each cell.
@@ -38,9 +39,11 @@ std::uint32_t facet_corner(const Tetrahedra& t, Facet f, std::uint32_t i) {
     return t.cells[f.cell][static_cast<std::size_t>(kFacetCorner[f.slot][i % 3])];
 }
 
-/// Turns about edge e of a facet through cells of one label until the label changes. `visit` sees every cell passed.
+/// Turns about edge e of a facet through cells of one label until the label changes. `visit` sees every cell
+/// passed.
 template <class Visit>
-Facet turn(const Tetrahedra& t, const std::vector<std::uint8_t>& inside, Facet start, std::uint32_t e, Visit visit) {
+Facet turn(const Tetrahedra& t, const std::vector<std::uint8_t>& inside, Facet start, std::uint32_t e,
+           Visit visit) {
     const std::uint8_t label = inside[start.cell];
     std::uint32_t cell = start.cell, from = start.slot;
     auto pivot = static_cast<std::uint32_t>(kFacetCorner[start.slot][(e + 2) % 3]);
@@ -77,7 +80,8 @@ Facets collect(const Tetrahedra& t, const std::vector<std::uint8_t>& inside) {
         const Facet f = out.facets[h / 3];
         const Facet other = turn(t, inside, f, h % 3, [](std::uint32_t) {});
         if (!(out.masks[other.cell] >> other.slot & 1)) continue;
-        const auto before = std::popcount(static_cast<std::uint8_t>(out.masks[other.cell] & ((1u << other.slot) - 1)));
+        const auto before =
+            std::popcount(static_cast<std::uint8_t>(out.masks[other.cell] & ((1u << other.slot) - 1)));
         const std::uint32_t g = out.starts[other.cell] + static_cast<std::uint32_t>(before);
         const std::uint32_t to = facet_corner(t, f, h % 3 + 1);
         std::uint32_t e = 0;
@@ -122,7 +126,9 @@ std::vector<std::uint32_t> doubled_edges(const Facets& f) {
     for (std::size_t v = 0; v + 1 < starts.size(); ++v)
         for (std::uint32_t i = starts[v]; i < starts[v + 1]; ++i)
             for (std::uint32_t j = starts[v]; j < starts[v + 1]; ++j) {
-                if (i == j || std::max(from(bucket[i]), to(bucket[i])) != std::max(from(bucket[j]), to(bucket[j]))) continue;
+                if (i == j ||
+                    std::max(from(bucket[i]), to(bucket[i])) != std::max(from(bucket[j]), to(bucket[j])))
+                    continue;
                 doubled.push_back(bucket[i]);
                 break;
             }
@@ -134,7 +140,8 @@ struct Fans {
     std::vector<std::vector<std::uint32_t>> groups;
 };
 
-Fans groups_around(const Tetrahedra& t, const std::vector<std::uint8_t>& inside, std::uint32_t sample, std::uint32_t start) {
+Fans groups_around(const Tetrahedra& t, const std::vector<std::uint8_t>& inside, std::uint32_t sample,
+                   std::uint32_t start) {
     std::vector<std::uint32_t> cells{start};
     for (std::size_t i = 0; i < cells.size(); ++i)
         for (std::size_t k = 0; k < 4; ++k) {
@@ -155,7 +162,8 @@ Fans groups_around(const Tetrahedra& t, const std::vector<std::uint8_t>& inside,
         for (std::size_t i = 0; i < group.size(); ++i)
             for (std::size_t k = 0; k < 4; ++k) {
                 const std::uint32_t other = t.neighbours[group[i]][k];
-                if (t.cells[group[i]][k] == sample || other == kNoCell || inside[other] != inside[group[i]]) continue;
+                if (t.cells[group[i]][k] == sample || other == kNoCell || inside[other] != inside[group[i]])
+                    continue;
                 const std::size_t at = place(other);
                 if (seen[at]) continue;
                 seen[at] = 1;
@@ -172,8 +180,9 @@ void untangle(const Tetrahedra& t, std::vector<std::uint8_t>& inside, BoundaryRe
     constexpr int kRounds = 5;
     constexpr std::size_t kFewCells = 4;
     const auto may_flip = [&](const std::vector<std::uint32_t>& cells) {
-        return cells.size() <= kFewCells &&
-               std::none_of(cells.begin(), cells.end(), [&](std::uint32_t c) { return has_corner_of_box(t, c, -1); });
+        return cells.size() <= kFewCells && std::none_of(cells.begin(), cells.end(), [&](std::uint32_t c) {
+                   return has_corner_of_box(t, c, -1);
+               });
     };
     for (int round = 0; round < kRounds; ++round) {
         const Facets f = collect(t, inside);
@@ -214,11 +223,13 @@ void untangle(const Tetrahedra& t, std::vector<std::uint8_t>& inside, BoundaryRe
         }
         if (flips.empty()) return;
         // The smallest first; a cell moves once a round.
-        std::stable_sort(flips.begin(), flips.end(), [](const auto& a, const auto& b) { return a.size() < b.size(); });
+        std::stable_sort(flips.begin(), flips.end(),
+                         [](const auto& a, const auto& b) { return a.size() < b.size(); });
         // What is near a cell that moved has changed, and waits for the next round.
         std::vector<std::uint8_t> touched(inside.size(), 0);
         for (const auto& group : flips) {
-            if (std::any_of(group.begin(), group.end(), [&](std::uint32_t c) { return touched[c] != 0; })) continue;
+            if (std::any_of(group.begin(), group.end(), [&](std::uint32_t c) { return touched[c] != 0; }))
+                continue;
             for (const std::uint32_t c : group) {
                 inside[c] ^= 1;
                 touched[c] = 1;
@@ -238,7 +249,8 @@ Crust extract_boundary(const Tetrahedra& t, const std::vector<std::uint8_t>& ins
     crust.points.reserve(f.sample.size());
     for (const std::uint32_t s : f.sample) crust.points.push_back(t.points[s]);
     crust.triangles.reserve(f.facets.size());
-    for (std::uint32_t i = 0; i < f.facets.size(); ++i) crust.triangles.push_back({f.vertex[3 * i], f.vertex[3 * i + 1], f.vertex[3 * i + 2]});
+    for (std::uint32_t i = 0; i < f.facets.size(); ++i)
+        crust.triangles.push_back({f.vertex[3 * i], f.vertex[3 * i + 1], f.vertex[3 * i + 2]});
 
     // Sheets that touch are drawn apart by a little of their own size, each towards its inside.
     constexpr double kDraw = 0.02;
@@ -278,7 +290,8 @@ Crust extract_boundary(const Tetrahedra& t, const std::vector<std::uint8_t>& ins
         std::vector<Triangle> triangles;
         triangles.reserve(crust.triangles.size() + 4 * doubled.size());
         for (std::uint32_t i = 0; i < crust.triangles.size(); ++i) {
-            const Pieces pieces = divide(crust.points, crust.triangles[i], {added[3 * i], added[3 * i + 1], added[3 * i + 2]}, kNoEdge);
+            const Pieces pieces = divide(crust.points, crust.triangles[i],
+                                         {added[3 * i], added[3 * i + 1], added[3 * i + 2]}, kNoEdge);
             for (std::size_t k = 0; k < pieces.count; ++k) triangles.push_back(pieces.triangles[k]);
         }
         crust.triangles = std::move(triangles);

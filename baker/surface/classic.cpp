@@ -34,7 +34,8 @@ Lists adjacent_poles(const PowerDiagram& diagram, std::size_t poles) {
     edges.reserve(diagram.cells.size() * 6);
     for (const Corners& c : diagram.cells)
         for (std::size_t i = 0; i < 4; ++i)
-            for (std::size_t j = i + 1; j < 4; ++j) edges.emplace_back(std::min(c[i], c[j]), std::max(c[i], c[j]));
+            for (std::size_t j = i + 1; j < 4; ++j)
+                edges.emplace_back(std::min(c[i], c[j]), std::max(c[i], c[j]));
     std::sort(edges.begin(), edges.end());
     edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
     const std::size_t count = edges.size();
@@ -50,7 +51,8 @@ struct Certainty {
 
 /// The point of equal power to the four poles of a regular cell.
 Vec3 power_centre(const PoleBalls& poles, const Corners& c, bool& known) {
-    const Vec3 a = poles.centres[c[0]], u = poles.centres[c[1]] - a, v = poles.centres[c[2]] - a, w = poles.centres[c[3]] - a;
+    const Vec3 a = poles.centres[c[0]], u = poles.centres[c[1]] - a, v = poles.centres[c[2]] - a,
+               w = poles.centres[c[3]] - a;
     const double base = poles.weights[c[0]];
     const double du = squared_length(u) + base - poles.weights[c[1]];
     const double dv = squared_length(v) + base - poles.weights[c[2]];
@@ -89,7 +91,8 @@ PoleBalls gather_poles(const Tetrahedra& tetrahedra, const Balls& balls, const P
     return out;
 }
 
-std::vector<std::uint8_t> label_poles(const Tetrahedra& tetrahedra, const PoleBalls& poles, const PowerDiagram& diagram) {
+std::vector<std::uint8_t> label_poles(const Tetrahedra& tetrahedra, const PoleBalls& poles,
+                                      const PowerDiagram& diagram) {
     const auto count = static_cast<std::uint32_t>(poles.cell.size());
     std::vector<std::pair<std::uint32_t, std::uint32_t>> entries;
     for (std::uint32_t s = 0; s < poles.first.size(); ++s) {
@@ -112,7 +115,8 @@ std::vector<std::uint8_t> label_poles(const Tetrahedra& tetrahedra, const PoleBa
     std::priority_queue<Entry> queue;
     for (std::uint32_t p = 0; p < count; ++p) {
         const Corners& corners = tetrahedra.cells[poles.cell[p]];
-        if (std::any_of(corners.begin(), corners.end(), [&](std::uint32_t v) { return v >= tetrahedra.samples; }))
+        if (std::any_of(corners.begin(), corners.end(),
+                        [&](std::uint32_t v) { return v >= tetrahedra.samples; }))
             certainty[p].out = 1;
         queue.push({certainty[p].priority(), p});
     }
@@ -134,12 +138,15 @@ std::vector<std::uint8_t> label_poles(const Tetrahedra& tetrahedra, const PoleBa
         for (const std::uint32_t s : samples.of(p)) {
             const std::uint32_t q = poles.first[s] == p ? poles.second[s] : poles.first[s];
             if (q == kNoCell || q == p) continue;
-            const Vec3 u = poles.centres[p] - tetrahedra.points[s], v = poles.centres[q] - tetrahedra.points[s];
+            const Vec3 u = poles.centres[p] - tetrahedra.points[s],
+                       v = poles.centres[q] - tetrahedra.points[s];
             tell(q, -dot(u, v) / std::sqrt(squared_length(u) * squared_length(v)), false);
         }
         for (const std::uint32_t q : adjacent.of(p)) {
             const double rp = poles.weights[p], rq = poles.weights[q];
-            tell(q, (rp + rq - squared_length(poles.centres[p] - poles.centres[q])) / (2 * std::sqrt(rp * rq)), true);
+            tell(q,
+                 (rp + rq - squared_length(poles.centres[p] - poles.centres[q])) / (2 * std::sqrt(rp * rq)),
+                 true);
         }
     }
     return inner;
@@ -174,7 +181,8 @@ Crust power_faces(const Tetrahedra& tetrahedra, const PoleBalls& poles, const Po
                 bool shared = false;
                 for (std::size_t j = 0; j < 4; ++j) {
                     const Corners& other = tetrahedra.cells[poles.cell[c[j]]];
-                    shared = shared || (inner[c[i]] != inner[c[j]] && std::find(other.begin(), other.end(), s) != other.end());
+                    shared = shared || (inner[c[i]] != inner[c[j]] &&
+                                        std::find(other.begin(), other.end(), s) != other.end());
                 }
                 if (!shared || s >= tetrahedra.samples) continue;
                 mean = mean + tetrahedra.points[s];
@@ -183,8 +191,8 @@ Crust power_faces(const Tetrahedra& tetrahedra, const PoleBalls& poles, const Po
         bool known = false;
         const Vec3 centre = power_centre(poles, c, known);
         if (shared_samples.empty()) {
-            // Poles that coincide but for rounding share no sample by name. The vertex lies on or near the inner ball, beside
-            // the samples of an outer one.
+            // Poles that coincide but for rounding share no sample by name. The vertex lies on or near the
+            // inner ball, beside the samples of an outer one.
             std::size_t in = 0, out = 0;
             while (in < 3 && !inner[c[in]]) ++in;
             while (out < 3 && inner[c[out]]) ++out;
@@ -199,12 +207,17 @@ Crust power_faces(const Tetrahedra& tetrahedra, const PoleBalls& poles, const Po
             return vertex[cell];
         }
         mean = mean * (1.0 / static_cast<double>(shared_samples.size()));
-        for (const std::uint32_t s : shared_samples) reach = std::max(reach, squared_length(tetrahedra.points[s] - mean));
-        known = known && squared_length(centre - mean) <= 4 * reach;
+        // The vertex is no farther from them than the farthest sample that any of the four balls touches.
+        for (std::size_t i = 0; i < 4; ++i)
+            for (const std::uint32_t s : tetrahedra.cells[poles.cell[c[i]]])
+                if (s < tetrahedra.samples)
+                    reach = std::max(reach, squared_length(tetrahedra.points[s] - mean));
+        known = known && squared_length(centre - mean) <= reach;
         crust.points.push_back(known ? centre : mean);
         return vertex[cell];
     };
-    // Permutations (p, q, a, b) of the slots that keep the orientation: crossing the facet without a turns about p -> q.
+    // Permutations (p, q, a, b) of the slots that keep the orientation: crossing the facet without a turns
+    // about p -> q.
     constexpr std::size_t kEven[12][3] = {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 0, 3}, {1, 2, 0}, {1, 3, 2},
                                           {2, 0, 1}, {2, 1, 3}, {2, 3, 0}, {3, 0, 2}, {3, 1, 0}, {3, 2, 1}};
     const auto slot_of = [](const Corners& c, std::uint32_t value) {

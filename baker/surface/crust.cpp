@@ -44,8 +44,8 @@ std::vector<std::uint32_t> leaving_edges(const Crust& crust, std::span<const std
     return leaving;
 }
 
-Pieces divide(const std::vector<Vec3>& points, const Triangle& corner, const std::array<std::uint32_t, 3>& middle,
-              std::uint32_t centre) {
+Pieces divide(const std::vector<Vec3>& points, const Triangle& corner,
+              const std::array<std::uint32_t, 3>& middle, std::uint32_t centre) {
     Pieces pieces;
     const int count = int(middle[0] != kNoEdge) + int(middle[1] != kNoEdge) + int(middle[2] != kNoEdge);
     if (count == 0) {

@@ -22,10 +22,18 @@ struct Crust {
 };
 
 /// Half-edge 3t+k runs from corner k of triangle t to corner k+1.
-inline std::uint32_t next_edge(std::uint32_t h) { return h % 3 == 2 ? h - 2 : h + 1; }
-inline std::uint32_t previous_edge(std::uint32_t h) { return h % 3 == 0 ? h + 2 : h - 1; }
-inline std::uint32_t edge_from(const Crust& crust, std::uint32_t h) { return crust.triangles[h / 3][h % 3]; }
-inline std::uint32_t edge_to(const Crust& crust, std::uint32_t h) { return crust.triangles[h / 3][(h + 1) % 3]; }
+inline std::uint32_t next_edge(std::uint32_t h) {
+    return h % 3 == 2 ? h - 2 : h + 1;
+}
+inline std::uint32_t previous_edge(std::uint32_t h) {
+    return h % 3 == 0 ? h + 2 : h - 1;
+}
+inline std::uint32_t edge_from(const Crust& crust, std::uint32_t h) {
+    return crust.triangles[h / 3][h % 3];
+}
+inline std::uint32_t edge_to(const Crust& crust, std::uint32_t h) {
+    return crust.triangles[h / 3][(h + 1) % 3];
+}
 
 /// For each half-edge the one that runs the other way, or kNoEdge at a boundary.
 /// The crust must be an oriented manifold (boundary allowed); a half-edge met twice has no opposite.
@@ -47,9 +55,10 @@ struct Pieces {
     void add(std::uint32_t a, std::uint32_t b, std::uint32_t c) { triangles[count++] = {a, b, c}; }
 };
 
-/// Divides a triangle whose edge k may have a point middle[k] (kNoEdge if not); `centre` is used only if all three have one.
-Pieces divide(const std::vector<Vec3>& points, const Triangle& corner, const std::array<std::uint32_t, 3>& middle,
-              std::uint32_t centre);
+/// Divides a triangle whose edge k may have a point middle[k] (kNoEdge if not); `centre` is used only if all
+/// three have one.
+Pieces divide(const std::vector<Vec3>& points, const Triangle& corner,
+              const std::array<std::uint32_t, 3>& middle, std::uint32_t centre);
 
 /// Removes points that no triangle names; order is kept.
 void drop_unused(Crust& crust);

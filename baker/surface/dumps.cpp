@@ -44,12 +44,14 @@ std::vector<std::byte> dump_voronoi(const Frame& frame, const Tetrahedra& tetrah
     std::vector<std::int64_t> edges;
     for (std::size_t c = 0; c < tetrahedra.cells.size(); ++c)
         for (const std::uint32_t n : tetrahedra.neighbours[c])
-            if (n != kNoCell && n > c) edges.insert(edges.end(), {static_cast<std::int64_t>(c), static_cast<std::int64_t>(n)});
+            if (n != kNoCell && n > c)
+                edges.insert(edges.end(), {static_cast<std::int64_t>(c), static_cast<std::int64_t>(n)});
     file.cells(2, edges);
     return file.poly_data();
 }
 
-std::vector<std::byte> dump_labels(const Frame& frame, const Tetrahedra& tetrahedra, const std::vector<std::uint8_t>& inside) {
+std::vector<std::byte> dump_labels(const Frame& frame, const Tetrahedra& tetrahedra,
+                                   const std::vector<std::uint8_t>& inside) {
     VtkFile file;
     file.points(placed(frame, tetrahedra.points));
     std::vector<std::int64_t> corners;
@@ -60,8 +62,8 @@ std::vector<std::byte> dump_labels(const Frame& frame, const Tetrahedra& tetrahe
     return file.unstructured_grid();
 }
 
-std::vector<std::byte> dump_poles(const Frame& frame, const PoleBalls& poles, const std::vector<std::uint8_t>& inner,
-                                  const UniquePoints& samples) {
+std::vector<std::byte> dump_poles(const Frame& frame, const PoleBalls& poles,
+                                  const std::vector<std::uint8_t>& inner, const UniquePoints& samples) {
     VtkFile file;
     file.points(placed(frame, poles.centres));
     file.point_data("radius", radii(frame, poles.weights));
@@ -108,7 +110,8 @@ MedialAxis power_shape(const Frame& frame, const PoleBalls& poles, const PowerDi
         for (std::size_t i = 0; i < 4; ++i)
             for (std::size_t j = i + 1; j < 4; ++j) {
                 if (!inner[c[i]] || !inner[c[j]]) continue;
-                axis.edges.push_back({std::min(place[c[i]], place[c[j]]), std::max(place[c[i]], place[c[j]])});
+                axis.edges.push_back(
+                    {std::min(place[c[i]], place[c[j]]), std::max(place[c[i]], place[c[j]])});
                 for (std::size_t k = j + 1; k < 4; ++k) {
                     if (!inner[c[k]]) continue;
                     std::array<std::uint32_t, 3> t{place[c[i]], place[c[j]], place[c[k]]};

@@ -10,7 +10,8 @@
 namespace vsplit::bake {
 namespace {
 
-/// The normal that most of the surface around the vertex agrees with: beside a crease, that of the vertex's own side.
+/// The normal that most of the surface around the vertex agrees with: beside a crease, that of the vertex's
+/// own side.
 Vec3 agreed_normal(std::span<const Vec3> normals, std::span<const double> areas) {
     double best = -1;
     Vec3 result;
@@ -44,7 +45,8 @@ void Patch::turn_to(Vec3 n) {
 
 namespace {
 
-/// Least squares over neighbours that agree with the patch's present normal; turns the patch into the fitted one.
+/// Least squares over neighbours that agree with the patch's present normal; turns the patch into the fitted
+/// one.
 void fit(Patch& patch, std::uint32_t v, std::span<const std::uint32_t> around, const Crust& crust,
          std::span<const Vec3> normals) {
     const Vec3 origin = crust.points[v];

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The vsplit authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What the surface looks like near each of its vertices: a tangent plane and a quadratic height over it, fitted to
-// those neighbours that lie on the same side of any crease.
+// What the surface looks like near each of its vertices: a tangent plane and a quadratic height over it,
+// fitted to those neighbours that lie on the same side of any crease.
 #pragma once
 
 #include <array>

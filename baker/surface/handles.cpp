@@ -19,14 +19,16 @@ class Region {
         for (const std::uint32_t v : t_.cells[c]) vertex_[v] = 1;
     }
 
-    /// Whether the cell meets the region's closure in something contractible, so that adding it keeps the topology; or in its
-    /// whole rim, so that it fills a bubble.
+    /// Whether the cell meets the region's closure in something contractible, so that adding it keeps the
+    /// topology; or in its whole rim, so that it fills a bubble.
     bool simple(std::uint32_t c) const {
         std::array<std::size_t, 4> shared{}, other{};
         std::size_t count = 0, rest = 0;
         for (std::size_t k = 0; k < 4; ++k) {
-            if (has(t_.neighbours[c][k])) shared[count++] = k;
-            else other[rest++] = k;
+            if (has(t_.neighbours[c][k]))
+                shared[count++] = k;
+            else
+                other[rest++] = k;
         }
         if (count >= 3) return true;
         // With two facets in, the edge across from the one that they share closes a loop.
@@ -48,7 +50,8 @@ class Region {
         for (std::size_t k = 0; k < 4; ++k)
             if (k != i && k != j) others[n++] = k;
         const auto slot_of = [](const Corners& corners, std::uint32_t value) {
-            return static_cast<std::size_t>(std::find(corners.begin(), corners.end(), value) - corners.begin());
+            return static_cast<std::size_t>(std::find(corners.begin(), corners.end(), value) -
+                                            corners.begin());
         };
         // Around the edge; where the hull cuts the way short, once more the other way.
         for (std::size_t way = 0; way < 2; ++way) {
@@ -74,15 +77,16 @@ class Region {
 
 }  // namespace
 
-std::size_t remove_handles(const Tetrahedra& tetrahedra, const Balls& balls, std::vector<std::uint8_t>& inside,
-                           std::uint8_t label, double smallest) {
+std::size_t remove_handles(const Tetrahedra& tetrahedra, const Balls& balls,
+                           std::vector<std::uint8_t>& inside, std::uint8_t label, double smallest) {
     const auto count = static_cast<std::uint32_t>(tetrahedra.cells.size());
     const double least = smallest * smallest;
     struct Entry {
         double squared_radius;
         std::uint32_t cell;
         bool operator<(const Entry& other) const {
-            return squared_radius != other.squared_radius ? squared_radius < other.squared_radius : cell > other.cell;
+            return squared_radius != other.squared_radius ? squared_radius < other.squared_radius
+                                                          : cell > other.cell;
         }
     };
     std::vector<std::uint32_t> seeds, stack;
@@ -109,16 +113,18 @@ std::size_t remove_handles(const Tetrahedra& tetrahedra, const Balls& balls, std
             if (n != kNoCell && inside[n] == label && !region.has(n)) queue.push({balls.squared_radii[n], n});
     };
     for (const std::uint32_t seed : seeds) add(seed);
-    // What cannot be added simply waits until nothing else is left: only then is a loop through a large ball the surface's own
-    // and not just not filled yet.
+    // What cannot be added simply waits until nothing else is left: only then is a loop through a large ball
+    // the surface's own and not just not filled yet.
     std::priority_queue<Entry> waiting;
     for (;;) {
         while (!queue.empty()) {
             const Entry top = queue.top();
             queue.pop();
             if (region.has(top.cell)) continue;
-            if (region.simple(top.cell)) add(top.cell);
-            else if (top.squared_radius > least) waiting.push(top);
+            if (region.simple(top.cell))
+                add(top.cell);
+            else if (top.squared_radius > least)
+                waiting.push(top);
         }
         while (!waiting.empty() && region.has(waiting.top().cell)) waiting.pop();
         if (waiting.empty()) break;
@@ -130,7 +136,8 @@ std::size_t remove_handles(const Tetrahedra& tetrahedra, const Balls& balls, std
         if (inside[c] != label || region.has(c)) continue;
         // The box stays outside, or there would be no closed surface.
         const Corners& corners = tetrahedra.cells[c];
-        if (label == 0 && std::any_of(corners.begin(), corners.end(), [&](std::uint32_t v) { return v >= tetrahedra.samples; }))
+        if (label == 0 && std::any_of(corners.begin(), corners.end(),
+                                      [&](std::uint32_t v) { return v >= tetrahedra.samples; }))
             continue;
         inside[c] ^= 1;
         ++changed;

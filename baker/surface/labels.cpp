@@ -20,7 +20,8 @@ std::uint16_t link_level(double agreement) {
     return static_cast<std::uint16_t>((1 - std::min(agreement, 1.0)) * 0.5 * (kLevels - 1));
 }
 
-/// Cosine of the angle between two balls' surfaces where they meet: 1 for one inside the other's rim, -1 when they touch.
+/// Cosine of the angle between two balls' surfaces where they meet: 1 for one inside the other's rim, -1 when
+/// they touch.
 double overlap(const Balls& balls, std::uint32_t a, std::uint32_t b) {
     const double ra = balls.squared_radii[a], rb = balls.squared_radii[b];
     return (ra + rb - squared_length(balls.centres[a] - balls.centres[b])) / (2 * std::sqrt(ra * rb));
@@ -70,21 +71,25 @@ Balls circumscribe(const Tetrahedra& tetrahedra) {
     Balls balls;
     balls.centres.resize(tetrahedra.cells.size());
     balls.squared_radii.resize(tetrahedra.cells.size());
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, tetrahedra.cells.size(), kGrain), [&](const auto& range) {
-        for (std::size_t i = range.begin(); i < range.end(); ++i) {
-            const Corners& c = tetrahedra.cells[i];
-            const Vec3 a = tetrahedra.points[c[0]], u = tetrahedra.points[c[1]] - a;
-            const Vec3 v = tetrahedra.points[c[2]] - a, w = tetrahedra.points[c[3]] - a;
-            const Vec3 vw = cross(v, w);
-            const Vec3 to_centre = (vw * squared_length(u) + cross(w, u) * squared_length(v) + cross(u, v) * squared_length(w)) *
-                                   (0.5 / dot(u, vw));
-            // So flat that rounding decides where the centre is: samples of an exact sphere are full of such cells.
-            const double squared = squared_length(to_centre), six = std::abs(dot(u, vw));
-            const bool known = squared < 1e24 && six * six > 1e-18 * squared_length(u) * squared_length(v) * squared_length(w);
-            balls.centres[i] = known ? a + to_centre : a;
-            balls.squared_radii[i] = known ? squared : 0;
-        }
-    });
+    tbb::parallel_for(
+        tbb::blocked_range<std::size_t>(0, tetrahedra.cells.size(), kGrain), [&](const auto& range) {
+            for (std::size_t i = range.begin(); i < range.end(); ++i) {
+                const Corners& c = tetrahedra.cells[i];
+                const Vec3 a = tetrahedra.points[c[0]], u = tetrahedra.points[c[1]] - a;
+                const Vec3 v = tetrahedra.points[c[2]] - a, w = tetrahedra.points[c[3]] - a;
+                const Vec3 vw = cross(v, w);
+                const Vec3 to_centre = (vw * squared_length(u) + cross(w, u) * squared_length(v) +
+                                        cross(u, v) * squared_length(w)) *
+                                       (0.5 / dot(u, vw));
+                // So flat that rounding decides where the centre is: samples of an exact sphere are full of
+                // such cells.
+                const double squared = squared_length(to_centre), six = std::abs(dot(u, vw));
+                const bool known = squared < 1e24 && six * six > 1e-18 * squared_length(u) *
+                                                                     squared_length(v) * squared_length(w);
+                balls.centres[i] = known ? a + to_centre : a;
+                balls.squared_radii[i] = known ? squared : 0;
+            }
+        });
     return balls;
 }
 
@@ -111,7 +116,8 @@ Poles find_poles(const Tetrahedra& tetrahedra, const Balls& balls) {
     return poles;
 }
 
-std::vector<std::uint8_t> label_cells(const Tetrahedra& tetrahedra, const Balls& balls, const Poles& poles, bool open) {
+std::vector<std::uint8_t> label_cells(const Tetrahedra& tetrahedra, const Balls& balls, const Poles& poles,
+                                      bool open) {
     const auto count = static_cast<std::uint32_t>(tetrahedra.cells.size());
     const std::uint32_t samples = static_cast<std::uint32_t>(tetrahedra.samples);
     // Links 4c+k join cell c with its neighbour k; links 4*count+s the poles of sample s.
@@ -121,7 +127,8 @@ std::vector<std::uint8_t> label_cells(const Tetrahedra& tetrahedra, const Balls&
         for (std::uint32_t c = range.begin(); c < range.end(); ++c)
             for (std::uint32_t k = 0; k < 4; ++k) {
                 const std::uint32_t other = tetrahedra.neighbours[c][k];
-                if (other != kNoCell && other > c) levels[std::size_t{4} * c + k] = link_level(overlap(balls, c, other));
+                if (other != kNoCell && other > c)
+                    levels[std::size_t{4} * c + k] = link_level(overlap(balls, c, other));
             }
     });
     tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, samples, kGrain), [&](const auto& range) {
@@ -129,7 +136,8 @@ std::vector<std::uint8_t> label_cells(const Tetrahedra& tetrahedra, const Balls&
             if (poles.first[s] == kNoCell || poles.second[s] == kNoCell) continue;
             const Vec3 u = balls.centres[poles.first[s]] - tetrahedra.points[s];
             const Vec3 v = balls.centres[poles.second[s]] - tetrahedra.points[s];
-            levels[std::size_t{4} * count + s] = link_level(-dot(u, v) / std::sqrt(squared_length(u) * squared_length(v)));
+            levels[std::size_t{4} * count + s] =
+                link_level(-dot(u, v) / std::sqrt(squared_length(u) * squared_length(v)));
         }
     });
     std::vector<std::size_t> starts(kLevels + 2, 0);
@@ -152,7 +160,8 @@ std::vector<std::uint8_t> label_cells(const Tetrahedra& tetrahedra, const Balls&
     }
     std::vector<std::uint8_t> inside(count);
     for (std::uint32_t c = 0; c < count; ++c) inside[c] = sets.find(c).flip;
-    // Every cell is joined to its neighbours by some link, so there is one set; only its sign is still to be said.
+    // Every cell is joined to its neighbours by some link, so there is one set; only its sign is still to be
+    // said.
     std::uint8_t outside = 0;
     if (open) {
         std::int64_t votes = 0;

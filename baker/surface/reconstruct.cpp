@@ -32,14 +32,17 @@ namespace {
 constexpr std::size_t kMostPoints = 100'000'000;
 /// Below, the threads of CGAL's concurrent triangulation cost more than they bring.
 constexpr std::size_t kWorthThreads = 100'000;
-/// Clean samples of a detailed model (armadillo, 5,000 samples) leave 0.085; 0.5 % noise after smoothing the points 0.15.
+/// Clean samples of a detailed model (armadillo, 5,000 samples) leave 0.085; 0.5 % noise after smoothing the
+/// points 0.15.
 constexpr double kRough = 0.12;
 /// Half the side of the box around the samples, in half sides of their own box: as in the published program.
 constexpr double kBox = 5;
 /// Quality below which a triangle is a sliver.
 constexpr double kSliver = 0.02;
 
-Error argument(const char* what) { return {ErrorCode::kArgument, what, Error::kNowhere, 0}; }
+Error argument(const char* what) {
+    return {ErrorCode::kArgument, what, Error::kNowhere, 0};
+}
 
 double cpu_seconds() {
     timespec now{};
@@ -109,7 +112,8 @@ void survey(const Crust& crust, CrustReport& report) {
     report.boundary_loops = loops;
     report.watertight = boundary == 0 && !crust.triangles.empty();
     const auto edges = static_cast<std::int64_t>((3 * crust.triangles.size() + boundary) / 2);
-    const std::int64_t euler = static_cast<std::int64_t>(report.vertices) - edges + static_cast<std::int64_t>(report.triangles);
+    const std::int64_t euler =
+        static_cast<std::int64_t>(report.vertices) - edges + static_cast<std::int64_t>(report.triangles);
     report.genus = (2 * static_cast<std::int64_t>(components) - static_cast<std::int64_t>(loops) - euler) / 2;
 }
 
@@ -117,7 +121,8 @@ void survey(const Crust& crust, CrustReport& report) {
 double spacing(const Crust& crust) {
     std::vector<double> edges;
     edges.reserve(crust.triangles.size());
-    for (const Triangle& t : crust.triangles) edges.push_back(length(crust.points[t[1]] - crust.points[t[0]]));
+    for (const Triangle& t : crust.triangles)
+        edges.push_back(length(crust.points[t[1]] - crust.points[t[0]]));
     if (edges.empty()) return 0;
     const auto middle = edges.begin() + static_cast<std::ptrdiff_t>(edges.size() / 2);
     std::nth_element(edges.begin(), middle, edges.end());
@@ -168,8 +173,10 @@ class Reconstructor {
             // Drawing sheets apart may leave a handle of its own; a second look finds most of these.
             for (int round = 0; round < 2 && report.genus > 0; ++round) {
                 if (!stages_.begin("handles", 0.65)) return stopped();
-                // A sheet has no handles; a closed surface has those that balls of a few spacings fit through.
-                const double smallest = options_.open ? std::numeric_limits<double>::infinity() : 3 * spacing(crust);
+                // A sheet has no handles; a closed surface has those that balls of a few spacings fit
+                // through.
+                const double smallest =
+                    options_.open ? std::numeric_limits<double>::infinity() : 3 * spacing(crust);
                 const std::size_t changed = remove_handles(tetrahedra, balls, inside, 0, smallest) +
                                             remove_handles(tetrahedra, balls, inside, 1, smallest);
                 if (changed == 0) break;
@@ -202,10 +209,13 @@ class Reconstructor {
     }
 
   private:
-    Error stopped() const { return {ErrorCode::kCancelled, "stopped while reconstructing", Error::kNowhere, 0}; }
+    Error stopped() const {
+        return {ErrorCode::kCancelled, "stopped while reconstructing", Error::kNowhere, 0};
+    }
 
-    /// CGAL's concurrent triangulation is quicker by the clock on an idle machine, but its threads spin where they wait: it
-    /// costs up to seven times the CPU time on a busy one. So it is used only by who asks for threads.
+    /// CGAL's concurrent triangulation is quicker by the clock on an idle machine, but its threads spin where
+    /// they wait: it costs up to seven times the CPU time on a busy one. So it is used only by who asks for
+    /// threads.
     int threads_for(std::size_t count) const { return count >= kWorthThreads ? options_.threads : 1; }
 
     /// The samples and the corners of a box so large that it does not bend what is near them.
@@ -213,7 +223,8 @@ class Reconstructor {
         double half = 0;
         for (const Vec3& p : points) half = std::max({half, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
         half *= kBox;
-        for (int k = 0; k < 8; ++k) points.push_back({k & 1 ? half : -half, k & 2 ? half : -half, k & 4 ? half : -half});
+        for (int k = 0; k < 8; ++k)
+            points.push_back({k & 1 ? half : -half, k & 2 ? half : -half, k & 4 ? half : -half});
         return points;
     }
 
@@ -241,15 +252,18 @@ class Reconstructor {
         for (std::size_t s = 0; s < tetrahedra.samples; ++s) out_.report.samples_unused += sides[s] != 3;
     }
 
-    void dump(const Frame& frame, const UniquePoints& samples, const Tetrahedra& tetrahedra, const Balls& balls,
-              const PoleBalls& poles, const PowerDiagram* diagram, const std::vector<std::uint8_t>& inner,
-              const std::vector<std::uint8_t>* inside) {
+    void dump(const Frame& frame, const UniquePoints& samples, const Tetrahedra& tetrahedra,
+              const Balls& balls, const PoleBalls& poles, const PowerDiagram* diagram,
+              const std::vector<std::uint8_t>& inner, const std::vector<std::uint8_t>* inside) {
         if (options_.medial_axis) out_.medial_axis = power_shape(frame, poles, *diagram, inner);
         if (!options_.sink) return;
-        if (options_.dumps & kDumpVoronoi) options_.sink("voronoi.vtp", dump_voronoi(frame, tetrahedra, balls, inside));
+        if (options_.dumps & kDumpVoronoi)
+            options_.sink("voronoi.vtp", dump_voronoi(frame, tetrahedra, balls, inside));
         if (options_.dumps & kDumpPoles) options_.sink("poles.vtp", dump_poles(frame, poles, inner, samples));
-        if (options_.dumps & kDumpPower) options_.sink("power.vtu", dump_power(frame, poles, *diagram, inner));
-        if (options_.dumps & kDumpLabels && inside) options_.sink("labels.vtu", dump_labels(frame, tetrahedra, *inside));
+        if (options_.dumps & kDumpPower)
+            options_.sink("power.vtu", dump_power(frame, poles, *diagram, inner));
+        if (options_.dumps & kDumpLabels && inside)
+            options_.sink("labels.vtu", dump_labels(frame, tetrahedra, *inside));
     }
 
     Result<Reconstruction> finish(Crust crust, const Frame& frame) {
@@ -262,7 +276,8 @@ class Reconstructor {
             drop_small_components(crust, crust.triangles.size() / 100, tidy);
         } else {
             // A phantom is small in itself and next to nothing beside the whole.
-            drop_small_components(crust, std::clamp<std::size_t>(crust.triangles.size() / 1000, 40, 200), tidy);
+            drop_small_components(crust, std::clamp<std::size_t>(crust.triangles.size() / 1000, 40, 200),
+                                  tidy);
         }
         if (!classic && options_.smooth) {
             if (!stages_.begin("smooth", 0.75)) return stopped();
@@ -289,7 +304,9 @@ class Reconstructor {
         }
         repair_slivers(crust, kSliver, tidy);
         if (crust.triangles.empty())
-            return argument(options_.open ? "no surface found" : "no surface found: the points enclose no volume (an open scan? see `open`)");
+            return argument(
+                options_.open ? "no surface found"
+                              : "no surface found: the points enclose no volume (an open scan? see `open`)");
         survey(crust, report);
         report.edges_collapsed = tidy.edges_collapsed;
         report.edges_flipped = tidy.edges_flipped;
@@ -298,7 +315,8 @@ class Reconstructor {
         report.triangles_dropped = tidy.triangles_dropped;
         out_.mesh.positions.reserve(crust.points.size());
         for (const Vec3& p : crust.points)
-            out_.mesh.positions.push_back({static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)});
+            out_.mesh.positions.push_back(
+                {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)});
         out_.mesh.triangles = std::move(crust.triangles);
         out_.origin = {origin.x, origin.y, origin.z};
         stages_.end();
@@ -314,18 +332,23 @@ class Reconstructor {
 
 }  // namespace
 
-Result<Reconstruction> reconstruct(std::span<const std::array<double, 3>> positions, const ReconstructOptions& options,
-                                   const Progress& progress) {
+Result<Reconstruction> reconstruct(std::span<const std::array<double, 3>> positions,
+                                   const ReconstructOptions& options, const Progress& progress) {
     if (options.threads < 0) return argument("the number of threads is negative");
-    if (options.open && options.method == CrustMethod::kClassic) return argument("the classic form makes closed surfaces only");
-    if (options.open && !(options.open_reach > 1)) return argument("an open surface reaches over at least one spacing");
-    if (positions.size() > kMostPoints) return Error{ErrorCode::kLimit, "more than 100 million points", Error::kNowhere, 0};
+    if (options.open && options.method == CrustMethod::kClassic)
+        return argument("the classic form makes closed surfaces only");
+    if (options.open && !(options.open_reach > 1))
+        return argument("an open surface reaches over at least one spacing");
+    if (positions.size() > kMostPoints)
+        return Error{ErrorCode::kLimit, "more than 100 million points", Error::kNowhere, 0};
     for (const auto& p : positions)
-        if (!std::isfinite(p[0]) || !std::isfinite(p[1]) || !std::isfinite(p[2])) return argument("a position is not finite");
+        if (!std::isfinite(p[0]) || !std::isfinite(p[1]) || !std::isfinite(p[2]))
+            return argument("a position is not finite");
     try {
         std::unique_ptr<tbb::global_control> limit;
         if (options.threads > 0)
-            limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism, options.threads);
+            limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
+                                                          options.threads);
         return Reconstructor(options, progress).run(positions);
     } catch (const std::bad_alloc&) {
         return Error{ErrorCode::kLimit, "not enough memory to reconstruct the surface", Error::kNowhere, 0};

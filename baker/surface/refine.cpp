@@ -18,8 +18,9 @@ struct Split {
     Vec3 point;
 };
 
-/// Where the tangent planes of both ends meet, nearest to where the edge crosses the plane that halves their angle:
-/// edges side by side across a crease cross that plane in order, so that their points follow the crease in order.
+/// Where the tangent planes of both ends meet, nearest to where the edge crosses the plane that halves their
+/// angle: edges side by side across a crease cross that plane in order, so that their points follow the
+/// crease in order.
 Split crease(Vec3 p, Vec3 q, Vec3 np, Vec3 nq) {
     const double p_over_q = std::abs(dot(nq, p - q)), q_over_p = std::abs(dot(np, q - p));
     if (!(p_over_q + q_over_p > 0)) return {};
@@ -37,7 +38,9 @@ Split curve(Vec3 p, Vec3 q, const Patch& at_p, const Patch& at_q, double smalles
     const Vec3 normal = unit(at_p.normal + at_q.normal);
     const double bow = 0.5 * (bow_p + bow_q), size = length(q - p);
     // Where the two ends disagree, neither is to be trusted.
-    if (std::abs(bow_p - bow_q) > 0.1 * size || std::abs(bow) > 0.3 * size || std::abs(bow) < smallest_bow * size) return {};
+    if (std::abs(bow_p - bow_q) > 0.1 * size || std::abs(bow) > 0.3 * size ||
+        std::abs(bow) < smallest_bow * size)
+        return {};
     return {Bend::kCurve, middle + normal * bow};
 }
 
@@ -56,7 +59,8 @@ bool meet(const Crust& crust, const Triangle& t, std::span<const Patch> patches,
     const double det = dot(a, cross(b, c));
     if (std::abs(det) < 0.2) return false;
     const Vec3 origin = (crust.points[t[0]] + crust.points[t[1]] + crust.points[t[2]]) * (1.0 / 3);
-    const Vec3 move = (cross(b, c) * dot(a, crust.points[t[0]] - origin) + cross(c, a) * dot(b, crust.points[t[1]] - origin) +
+    const Vec3 move = (cross(b, c) * dot(a, crust.points[t[0]] - origin) +
+                       cross(c, a) * dot(b, crust.points[t[1]] - origin) +
                        cross(a, b) * dot(c, crust.points[t[2]] - origin)) *
                       (1 / det);
     point = origin + move;
@@ -97,7 +101,9 @@ RefineReport refine(Crust& crust, const RefineOptions& options) {
     }
 
     // Points that would fold the surface over are given up, until none does.
-    const auto middles = [&](std::uint32_t t) { return std::array{added[3 * t], added[3 * t + 1], added[3 * t + 2]}; };
+    const auto middles = [&](std::uint32_t t) {
+        return std::array{added[3 * t], added[3 * t + 1], added[3 * t + 2]};
+    };
     std::vector<std::uint32_t> todo(count), next;
     for (std::uint32_t t = 0; t < count; ++t) todo[t] = t;
     while (!todo.empty()) {
@@ -107,7 +113,8 @@ RefineReport refine(Crust& crust, const RefineOptions& options) {
             if (middle[0] == kNoEdge && middle[1] == kNoEdge && middle[2] == kNoEdge) continue;
             const Pieces pieces = divide(crust.points, crust.triangles[t], middle, centres[t]);
             bool good = true;
-            for (std::size_t i = 0; i < pieces.count; ++i) good = good && faces_outward(crust.points, pieces.triangles[i], patches);
+            for (std::size_t i = 0; i < pieces.count; ++i)
+                good = good && faces_outward(crust.points, pieces.triangles[i], patches);
             if (good) continue;
             if (centres[t] != kNoEdge) {
                 centres[t] = kNoEdge;
@@ -120,7 +127,8 @@ RefineReport refine(Crust& crust, const RefineOptions& options) {
             for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
                 if (added[h] == kNoEdge) continue;
                 const Vec3 p = crust.points[edge_from(crust, h)], q = crust.points[edge_to(crust, h)];
-                const double m = squared_length(crust.points[added[h]] - (p + q) * 0.5) / squared_length(q - p);
+                const double m =
+                    squared_length(crust.points[added[h]] - (p + q) * 0.5) / squared_length(q - p);
                 if (m > move) move = m, boldest = h;
             }
             added[boldest] = added[opposite[boldest]] = kNoEdge;
@@ -136,7 +144,8 @@ RefineReport refine(Crust& crust, const RefineOptions& options) {
     triangles.reserve(count * 2);
     for (std::uint32_t t = 0; t < count; ++t) {
         const Pieces pieces = divide(crust.points, crust.triangles[t], middles(t), centres[t]);
-        triangles.insert(triangles.end(), pieces.triangles.begin(), pieces.triangles.begin() + static_cast<std::ptrdiff_t>(pieces.count));
+        triangles.insert(triangles.end(), pieces.triangles.begin(),
+                         pieces.triangles.begin() + static_cast<std::ptrdiff_t>(pieces.count));
         report.corner_points += centres[t] != kNoEdge;
     }
     for (std::uint32_t h = 0; h < opposite.size(); ++h)

@@ -23,7 +23,9 @@ std::size_t trim_rim(Crust& crust, double reach) {
     std::vector<double> spacing(count, 0), known;
     for (std::size_t v = 0; v < count; ++v) {
         if (shortest[v][0] >= 1e300) continue;
-        const double last = shortest[v][2] < 1e300 ? shortest[v][2] : shortest[v][1] < 1e300 ? shortest[v][1] : shortest[v][0];
+        const double last = shortest[v][2] < 1e300   ? shortest[v][2]
+                            : shortest[v][1] < 1e300 ? shortest[v][1]
+                                                     : shortest[v][0];
         const double middle = shortest[v][1] < 1e300 ? shortest[v][1] : shortest[v][0];
         spacing[v] = (shortest[v][0] + middle + last) / 3;
         known.push_back(spacing[v]);
@@ -47,7 +49,8 @@ std::size_t trim_rim(Crust& crust, double reach) {
     const auto unsupported = [&](std::uint32_t t) {
         double longest = 0, usual = 0;
         for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
-            longest = std::max(longest, length(crust.points[edge_to(crust, h)] - crust.points[edge_from(crust, h)]));
+            longest = std::max(longest,
+                               length(crust.points[edge_to(crust, h)] - crust.points[edge_from(crust, h)]));
             usual = std::max(usual, spacing[edge_from(crust, h)]);
         }
         return longest > reach * usual;
@@ -59,7 +62,8 @@ std::size_t trim_rim(Crust& crust, double reach) {
         int open = 0;
         for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) open += open_edge(h);
         if (open == 0) continue;
-        // With one open edge the corner across from it must be inside, or the sheet would hang on by that corner.
+        // With one open edge the corner across from it must be inside, or the sheet would hang on by that
+        // corner.
         if (open == 1) {
             std::uint32_t h = 3 * t;
             while (!open_edge(h)) ++h;
@@ -69,7 +73,8 @@ std::size_t trim_rim(Crust& crust, double reach) {
         ++trimmed;
         for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
             const bool was_open = opposite[h] == kNoEdge || !alive[opposite[h] / 3];
-            for (const std::uint32_t v : {edge_from(crust, h), edge_to(crust, h)}) rim[v] = was_open ? rim[v] - 1 : rim[v] + 1;
+            for (const std::uint32_t v : {edge_from(crust, h), edge_to(crust, h)})
+                rim[v] = was_open ? rim[v] - 1 : rim[v] + 1;
             if (!was_open) todo.push_back(opposite[h] / 3);
         }
         // Triangles kept only because of a corner of this one may go now.

@@ -27,7 +27,8 @@ Rings make_rings(const Crust& crust) {
     const std::size_t count = crust.points.size();
     Rings rings;
     rings.starts.assign(count + 1, 0);
-    // Every edge of a closed surface is met once from either end; at a boundary once from one end only, which is enough.
+    // Every edge of a closed surface is met once from either end; at a boundary once from one end only, which
+    // is enough.
     for (const Triangle& t : crust.triangles)
         for (const std::uint32_t v : t) ++rings.starts[v + 1];
     for (std::size_t v = 0; v < count; ++v) rings.starts[v + 1] += rings.starts[v];
@@ -89,7 +90,8 @@ double lift(const Crust& crust, const Rings& rings, std::uint32_t v, std::vector
     std::array<double, 6> b{};
     for (std::size_t i = 0; i <= rank; ++i) {
         constexpr double kLeastCosine = 0.3;
-        const double agreement = (dot(rings.normals[near[i].vertex], frame.normal) - kLeastCosine) / (1 - kLeastCosine);
+        const double agreement =
+            (dot(rings.normals[near[i].vertex], frame.normal) - kLeastCosine) / (1 - kLeastCosine);
         if (agreement <= 0) continue;
         const Vec3 d = (crust.points[near[i].vertex] - origin) * (1 / reach);
         const double weight = agreement * std::exp(-2 * squared_length(d));
@@ -118,11 +120,15 @@ double roughness(const Crust& crust) {
     for (std::size_t v = 0; v < crust.points.size(); v += step) {
         const std::uint32_t first = rings.starts[v], last = rings.starts[v + 1];
         double edges = 0;
-        for (std::uint32_t i = first; i < last; ++i) edges += length(crust.points[rings.vertices[i]] - crust.points[v]);
-        if (edges > 0) missed.push_back(std::abs(lift(crust, rings, static_cast<std::uint32_t>(v), near)) * (last - first) / edges);
+        for (std::uint32_t i = first; i < last; ++i)
+            edges += length(crust.points[rings.vertices[i]] - crust.points[v]);
+        if (edges > 0)
+            missed.push_back(std::abs(lift(crust, rings, static_cast<std::uint32_t>(v), near)) *
+                             (last - first) / edges);
     }
     if (missed.empty()) return 0;
-    std::nth_element(missed.begin(), missed.begin() + static_cast<std::ptrdiff_t>(missed.size() / 2), missed.end());
+    std::nth_element(missed.begin(), missed.begin() + static_cast<std::ptrdiff_t>(missed.size() / 2),
+                     missed.end());
     return missed[missed.size() / 2];
 }
 
@@ -132,7 +138,8 @@ void smooth(Crust& crust) {
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, moved.size(), 1024), [&](const auto& range) {
         std::vector<Near> near;
         for (std::size_t v = range.begin(); v < range.end(); ++v)
-            moved[v] = crust.points[v] + rings.normals[v] * lift(crust, rings, static_cast<std::uint32_t>(v), near);
+            moved[v] =
+                crust.points[v] + rings.normals[v] * lift(crust, rings, static_cast<std::uint32_t>(v), near);
     });
     crust.points = std::move(moved);
 }

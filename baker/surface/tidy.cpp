@@ -14,7 +14,8 @@ double quality(Vec3 a, Vec3 b, Vec3 c) {
     return squares > 0 ? 2 * std::sqrt(3.0) * length(cross(b - a, c - a)) / squares : 0;
 }
 
-/// A crust whose triangles come and go. Only vertices near a repair keep a list of their triangles up to date.
+/// A crust whose triangles come and go. Only vertices near a repair keep a list of their triangles up to
+/// date.
 class Tidier {
   public:
     Tidier(Crust& crust, double worst) : crust_(crust), worst_(worst), starts_(crust.points.size() + 1, 0) {
@@ -105,7 +106,8 @@ class Tidier {
     bool repair(std::uint32_t t, TidyReport& report) {
         const Triangle c = crust_.triangles[t];
         std::array<std::pair<double, std::size_t>, 3> edges;
-        for (std::size_t k = 0; k < 3; ++k) edges[k] = {squared_length(point(c[(k + 1) % 3]) - point(c[k])), k};
+        for (std::size_t k = 0; k < 3; ++k)
+            edges[k] = {squared_length(point(c[(k + 1) % 3]) - point(c[k])), k};
         std::sort(edges.begin(), edges.end());
         const std::size_t least = edges[0].second, most = edges[2].second;
         if (edges[0].first <= 0.04 * edges[2].first) {
@@ -122,8 +124,9 @@ class Tidier {
         return false;
     }
 
-    /// Moves u to v. Twins of the link condition (Dey, Edelsbrunner, Guha, Nekhayev, "Topology preserving edge contraction",
-    /// 1999) for inner vertices: the ends share exactly the two vertices opposite to the edge.
+    /// Moves u to v. Twins of the link condition (Dey, Edelsbrunner, Guha, Nekhayev, "Topology preserving
+    /// edge contraction", 1999) for inner vertices: the ends share exactly the two vertices opposite to the
+    /// edge.
     bool collapse(std::uint32_t u, std::uint32_t v) {
         std::array<std::uint32_t, 2> both{};
         if (!on_edge(u, v, both)) return false;
@@ -133,7 +136,8 @@ class Tidier {
         near_u_.erase(std::unique(near_u_.begin(), near_u_.end()), near_u_.end());
         near_v_.erase(std::unique(near_v_.begin(), near_v_.end()), near_v_.end());
         common_.clear();
-        std::set_intersection(near_u_.begin(), near_u_.end(), near_v_.begin(), near_v_.end(), std::back_inserter(common_));
+        std::set_intersection(near_u_.begin(), near_u_.end(), near_v_.begin(), near_v_.end(),
+                              std::back_inserter(common_));
         if (common_.size() != 2 || near_u_.size() + near_v_.size() <= 7) return false;
         for (const std::uint32_t w : common_)
             if (around(w).size() <= 3) return false;
@@ -178,9 +182,12 @@ class Tidier {
         const Triangle one{apex, a, far}, two{apex, far, b};
         const Vec3 side = unit(area_normal(crust_, crust_.triangles[other]));
         const double before = std::min(quality_of(t), quality_of(other));
-        const double after = std::min(quality(point(one[0]), point(one[1]), point(one[2])), quality(point(two[0]), point(two[1]), point(two[2])));
+        const double after = std::min(quality(point(one[0]), point(one[1]), point(one[2])),
+                                      quality(point(two[0]), point(two[1]), point(two[2])));
         if (after <= before || after < 0.5 * worst_) return false;
-        if (dot(unit(area_normal(crust_, one)), side) < 0.5 || dot(unit(area_normal(crust_, two)), side) < 0.5) return false;
+        if (dot(unit(area_normal(crust_, one)), side) < 0.5 ||
+            dot(unit(area_normal(crust_, two)), side) < 0.5)
+            return false;
         crust_.triangles[t] = one;
         crust_.triangles[other] = two;
         leave(b, t);
@@ -200,7 +207,9 @@ class Tidier {
 
 }  // namespace
 
-void repair_slivers(Crust& crust, double worst, TidyReport& report) { Tidier(crust, worst).run(report); }
+void repair_slivers(Crust& crust, double worst, TidyReport& report) {
+    Tidier(crust, worst).run(report);
+}
 
 void drop_small_components(Crust& crust, std::size_t least, TidyReport& report) {
     std::vector<std::uint32_t> root(crust.points.size());

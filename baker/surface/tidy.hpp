@@ -15,9 +15,9 @@ struct TidyReport {
     std::size_t components_dropped = 0, triangles_dropped = 0;
 };
 
-/// Repairs triangles whose quality (4 sqrt 3 area over the sum of squared edges, 1 if equilateral) is below `worst`: needles
-/// lose their short edge, caps have their long edge flipped. An edge collapses only under the link condition and only if no
-/// triangle turns; so a manifold stays one, with its genus.
+/// Repairs triangles whose quality (4 sqrt 3 area over the sum of squared edges, 1 if equilateral) is below
+/// `worst`: needles lose their short edge, caps have their long edge flipped. An edge collapses only under
+/// the link condition and only if no triangle turns; so a manifold stays one, with its genus.
 void repair_slivers(Crust& crust, double worst, TidyReport& report);
 
 /// Drops connected parts of fewer triangles than `least`, but never the largest.

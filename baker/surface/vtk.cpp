@@ -39,13 +39,18 @@ void VtkFile::cells(int corners, std::span<const std::int64_t> connectivity) {
     cells_.push_back({corners, {connectivity.begin(), connectivity.end()}});
 }
 
-std::vector<std::byte> VtkFile::poly_data() const { return assemble(false); }
-std::vector<std::byte> VtkFile::unstructured_grid() const { return assemble(true); }
+std::vector<std::byte> VtkFile::poly_data() const {
+    return assemble(false);
+}
+std::vector<std::byte> VtkFile::unstructured_grid() const {
+    return assemble(true);
+}
 
 std::vector<std::byte> VtkFile::assemble(bool grid) const {
     std::string xml, data;
     const auto append = [&](const Array& a) {
-        xml += "<DataArray " + a.attributes + " format=\"appended\" offset=\"" + std::to_string(data.size()) + "\"/>\n";
+        xml += "<DataArray " + a.attributes + " format=\"appended\" offset=\"" + std::to_string(data.size()) +
+               "\"/>\n";
         const std::uint64_t size = a.bytes.size();
         data.append(reinterpret_cast<const char*>(&size), sizeof size);
         data.append(reinterpret_cast<const char*>(a.bytes.data()), a.bytes.size());
@@ -58,7 +63,8 @@ std::vector<std::byte> VtkFile::assemble(bool grid) const {
             connectivity.insert(connectivity.end(), c.connectivity.begin(), c.connectivity.end());
             const std::int64_t before = offsets.empty() ? 0 : offsets.back();
             const auto count = static_cast<std::int64_t>(c.connectivity.size()) / c.corners;
-            constexpr std::uint8_t kKinds[] = {0, 1, 3, 5, 10};  // VTK's numbers for vertex, line, triangle, tetrahedron
+            constexpr std::uint8_t kKinds[] = {0, 1, 3, 5,
+                                               10};  // VTK's numbers for vertex, line, triangle, tetrahedron
             for (std::int64_t i = 1; i <= count; ++i) {
                 offsets.push_back(before + i * c.corners);
                 kinds.push_back(kKinds[c.corners]);
@@ -79,13 +85,13 @@ std::vector<std::byte> VtkFile::assemble(bool grid) const {
 
     const char* kind = grid ? "UnstructuredGrid" : "PolyData";
     xml = "<?xml version=\"1.0\"?>\n<VTKFile type=\"" + std::string(kind) +
-          "\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<" + kind + ">\n<Piece NumberOfPoints=\"" +
-          std::to_string(point_count_) + "\"";
+          "\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<" + kind +
+          ">\n<Piece NumberOfPoints=\"" + std::to_string(point_count_) + "\"";
     if (grid)
         xml += " NumberOfCells=\"" + count_of(any) + "\">\n";
     else
-        xml += " NumberOfVerts=\"" + count_of(of(1)) + "\" NumberOfLines=\"" + count_of(of(2)) + "\" NumberOfStrips=\"0\" NumberOfPolys=\"" +
-               count_of(of(3)) + "\">\n";
+        xml += " NumberOfVerts=\"" + count_of(of(1)) + "\" NumberOfLines=\"" + count_of(of(2)) +
+               "\" NumberOfStrips=\"0\" NumberOfPolys=\"" + count_of(of(3)) + "\">\n";
     xml += "<PointData>\n";
     for (const Array& a : point_data_) append(a);
     xml += "</PointData>\n<CellData>\n";

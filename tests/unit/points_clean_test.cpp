@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: MIT
 //
 // Cleaning and the Voronoi tessellation, checked against what is known or counted by brute force.
-#include <catch2/catch.hpp>
-
 #include <algorithm>
+#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -124,7 +123,8 @@ TEST_CASE("thinning by a grid keeps one point a cell, by WLOP the share asked fo
     CHECK(thinned.cloud.positions.size() < 900);
     CHECK(thinned.cloud.positions.size() > 200);
     CHECK(thinned.report.thinned == 4000 - thinned.cloud.positions.size());
-    for (const Position& p : thinned.cloud.positions) CHECK(std::find(points.begin(), points.end(), p) != points.end());
+    for (const Position& p : thinned.cloud.positions)
+        CHECK(std::find(points.begin(), points.end(), p) != points.end());
     CleanOptions wlop;
     wlop.thin = Thin::kWlop;
     wlop.wlop_share = 0.25;
@@ -146,7 +146,8 @@ TEST_CASE("cleaning refuses nonsense and stops when asked to") {
     CHECK(clean_points({}).ok());
     PointCloud cloud;
     cloud.positions = sphere(100, 0);
-    CHECK(clean_points(cloud, {}, [](std::string_view, double) { return false; }).error().code == ErrorCode::kCancelled);
+    CHECK(clean_points(cloud, {}, [](std::string_view, double) { return false; }).error().code ==
+          ErrorCode::kCancelled);
 }
 
 TEST_CASE("cleaning gives the same for any number of threads and any scale") {
@@ -209,18 +210,22 @@ TEST_CASE("Voronoi volumes and neighbours against brute force") {
     int compared = 0;
     for (std::size_t v = 0; v < 120; ++v) {
         if (std::isinf(cells->volumes[v]) || cells->volumes[v] > 0.03) continue;
-        CHECK(cells->volumes[v] == Approx(counted[v]).margin(4 * std::sqrt(counted[v] * volume / kDice) + 1e-4));
+        CHECK(cells->volumes[v] ==
+              Approx(counted[v]).margin(4 * std::sqrt(counted[v] * volume / kDice) + 1e-4));
         ++compared;
         // Neighbourhood is mutual, and the nearest point is always a neighbour.
         std::size_t nearest = 0;
         double least = 1e300;
         for (std::size_t w = 0; w < 120; ++w) {
             double d = 0;
-            for (std::size_t k = 0; k < 3; ++k) d += (points[w][k] - points[v][k]) * (points[w][k] - points[v][k]);
+            for (std::size_t k = 0; k < 3; ++k)
+                d += (points[w][k] - points[v][k]) * (points[w][k] - points[v][k]);
             if (w != v && d < least) least = d, nearest = w;
         }
         const auto has = [&](std::size_t a, std::size_t b) {
-            return std::binary_search(cells->neighbours.begin() + cells->neighbour_starts[a], cells->neighbours.begin() + cells->neighbour_starts[a + 1], std::uint32_t(b));
+            return std::binary_search(cells->neighbours.begin() + cells->neighbour_starts[a],
+                                      cells->neighbours.begin() + cells->neighbour_starts[a + 1],
+                                      std::uint32_t(b));
         };
         CHECK(has(v, nearest));
         CHECK(has(nearest, v));

@@ -3,7 +3,6 @@
 //
 // Readers of point files: what they take, what they refuse, and that nothing crashes them.
 #include <catch2/catch.hpp>
-
 #include <cstring>
 #include <limits>
 #include <random>
@@ -16,7 +15,8 @@ using namespace vsplit::bake;
 
 namespace {
 
-Result<PointFile> parse(const std::string& text, const char* extension = ".xyz", const PointReadOptions& options = {}) {
+Result<PointFile> parse(const std::string& text, const char* extension = ".xyz",
+                        const PointReadOptions& options = {}) {
     return parse_points(std::as_bytes(std::span(text)), extension, options);
 }
 
@@ -28,8 +28,10 @@ void put(std::string& to, T value) {
 std::string binary_ply() {
     std::string s =
         "ply\nformat binary_little_endian 1.0\ncomment made by hand\nelement camera 1\nproperty float fov\n"
-        "element vertex 3\nproperty double x\nproperty double y\nproperty double z\nproperty list uchar int tags\n"
-        "property float nx\nproperty float ny\nproperty float nz\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n"
+        "element vertex 3\nproperty double x\nproperty double y\nproperty double z\nproperty list uchar int "
+        "tags\n"
+        "property float nx\nproperty float ny\nproperty float nz\nproperty uchar red\nproperty uchar "
+        "green\nproperty uchar blue\n"
         "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
     put(s, 45.0f);
     for (int i = 0; i < 3; ++i) {
@@ -44,16 +46,19 @@ std::string binary_ply() {
 }
 
 std::string pcd_header(const char* encoding, int points) {
-    return "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS x y z rgb\nSIZE 4 4 4 4\nTYPE F F F U\n"
-           "COUNT 1 1 1 1\nWIDTH " + std::to_string(points) + "\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " +
-           std::to_string(points) + "\nDATA " + encoding + "\n";
+    return "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS x y z rgb\nSIZE 4 4 4 4\nTYPE F "
+           "F F U\n"
+           "COUNT 1 1 1 1\nWIDTH " +
+           std::to_string(points) + "\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " + std::to_string(points) +
+           "\nDATA " + encoding + "\n";
 }
 
 std::string binary_pcd(bool compressed) {
     constexpr int n = 40;
     std::string data;
     if (!compressed) {
-        for (int i = 0; i < n; ++i) put(data, float(i)), put(data, 2.0f * float(i)), put(data, 3.0f), put(data, 0x010203u);
+        for (int i = 0; i < n; ++i)
+            put(data, float(i)), put(data, 2.0f * float(i)), put(data, 3.0f), put(data, 0x010203u);
         return pcd_header("binary", n) + data;
     }
     std::string fields;
@@ -141,8 +146,10 @@ TEST_CASE("text points: what is refused, with its line") {
 }
 
 TEST_CASE("PLY points: text and binary, with what else the file holds") {
-    auto file = parse("ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\n"
-                      "property float quality\nend_header\n1 2 3 9\n4 5 6 9\n", ".ply");
+    auto file = parse(
+        "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\n"
+        "property float quality\nend_header\n1 2 3 9\n4 5 6 9\n",
+        ".ply");
     REQUIRE(file.ok());
     CHECK(file->cloud.positions[1] == std::array<double, 3>{4, 5, 6});
     CHECK(file->report.columns_ignored == 1);
@@ -151,12 +158,17 @@ TEST_CASE("PLY points: text and binary, with what else the file holds") {
     CHECK(file->cloud.positions[2] == std::array<double, 3>{20, 21, 22});
     CHECK(file->cloud.normals[2][2] == 1.0f);
     CHECK(file->cloud.colours[1][0] == 101);
-    CHECK(parse("ply\nformat ascii 1.0\nelement vertex 4000000000\nproperty float x\nproperty float y\nproperty float z\nend_header\n1 2 3\n")
-              .error().code == ErrorCode::kLimit);
+    CHECK(parse("ply\nformat ascii 1.0\nelement vertex 4000000000\nproperty float x\nproperty float "
+                "y\nproperty float z\nend_header\n1 2 3\n")
+              .error()
+              .code == ErrorCode::kLimit);
     PointReadOptions many;
     many.max_points = ~0ull;
-    CHECK(parse("ply\nformat ascii 1.0\nelement vertex 4000000000\nproperty float x\nproperty float y\nproperty float z\nend_header\n1 2 3\n", ".ply", many)
-              .error().code == ErrorCode::kTruncated);
+    CHECK(parse("ply\nformat ascii 1.0\nelement vertex 4000000000\nproperty float x\nproperty float "
+                "y\nproperty float z\nend_header\n1 2 3\n",
+                ".ply", many)
+              .error()
+              .code == ErrorCode::kTruncated);
 }
 
 TEST_CASE("PCD points: ascii, binary, compressed") {
@@ -177,22 +189,28 @@ TEST_CASE("PCD points: ascii, binary, compressed") {
 
 TEST_CASE("hostile point files: cut anywhere and flipped anywhere, an answer and no crash") {
     const std::string text = "3\n1.5 2 3e2 0 0 1\n-4 5 6 0 1 0\n7 8 9 1 0 0\n";
-    for (const std::string& good : {text, binary_ply(), pcd_header("ascii", 2) + "1 2 3 5\n4 5 6 7\n", binary_pcd(false), binary_pcd(true)}) {
+    for (const std::string& good : {text, binary_ply(), pcd_header("ascii", 2) + "1 2 3 5\n4 5 6 7\n",
+                                    binary_pcd(false), binary_pcd(true)}) {
         REQUIRE(parse(good).ok());
         for (std::size_t cut = 0; cut < good.size(); ++cut) {
             const auto file = parse(good.substr(0, cut));
             // A cut number is still a number; but nothing may be invented.
-            if (file.ok()) CHECK(file->cloud.positions.size() <= 40);
-            else CHECK(!file.error().message.empty());
+            if (file.ok())
+                CHECK(file->cloud.positions.size() <= 40);
+            else
+                CHECK(!file.error().message.empty());
         }
         std::mt19937 random(1);
         for (int i = 0; i < 3000; ++i) {
             std::string bad = good;
-            for (int k = 0; k < 1 + i % 4; ++k) bad[random() % bad.size()] ^= static_cast<char>(1 << random() % 8);
+            for (int k = 0; k < 1 + i % 4; ++k)
+                bad[random() % bad.size()] ^= static_cast<char>(1 << random() % 8);
             const auto file = parse(bad);
             if (!file.ok()) continue;
-            for (const auto& p : file->cloud.positions) REQUIRE((std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2])));
-            REQUIRE((file->cloud.normals.empty() || file->cloud.normals.size() == file->cloud.positions.size()));
+            for (const auto& p : file->cloud.positions)
+                REQUIRE((std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2])));
+            REQUIRE(
+                (file->cloud.normals.empty() || file->cloud.normals.size() == file->cloud.positions.size()));
         }
     }
 }

@@ -27,7 +27,8 @@ inline std::vector<Position> sphere_points(int count, Position centre, double ra
 }
 
 /// Around the z axis, or around the y axis if `upright`. Even by area.
-inline std::vector<Position> torus_points(int count, Position centre, double major, double minor, bool upright, std::uint64_t seed) {
+inline std::vector<Position> torus_points(int count, Position centre, double major, double minor,
+                                          bool upright, std::uint64_t seed) {
     std::mt19937_64 random(seed);
     std::uniform_real_distribution<double> u(0, 1);
     std::vector<Position> points;
@@ -36,7 +37,8 @@ inline std::vector<Position> torus_points(int count, Position centre, double maj
         if (u(random) * (major + minor) > major + minor * std::cos(b)) continue;
         const double r = major + minor * std::cos(b);
         const Position p{r * std::cos(a), r * std::sin(a), minor * std::sin(b)};
-        points.push_back({centre[0] + p[0], centre[1] + (upright ? p[2] : p[1]), centre[2] + (upright ? p[1] : p[2])});
+        points.push_back(
+            {centre[0] + p[0], centre[1] + (upright ? p[2] : p[1]), centre[2] + (upright ? p[1] : p[2])});
     }
     return points;
 }

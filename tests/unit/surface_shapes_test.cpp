@@ -2,18 +2,17 @@
 // SPDX-License-Identifier: MIT
 //
 // Known shapes, sampled at random: topology must be the truth's, and the surface near it.
-#include <catch2/catch.hpp>
-
 #include <algorithm>
+#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
 
+#include "family.hpp"
 #include "surface_samples.hpp"
 #include "vsplit/bake/files.hpp"
 #include "vsplit/bake/meshes.hpp"
 #include "vsplit/bake/points.hpp"
 #include "vsplit/bake/surface.hpp"
-#include "family.hpp"
 
 using namespace vsplit;
 using namespace vsplit::bake;
@@ -25,7 +24,8 @@ double volume(const Mesh& mesh) {
     double six = 0;
     for (const Triangle& t : mesh.triangles) {
         const Float3 a = mesh.positions[t[0]], b = mesh.positions[t[1]], c = mesh.positions[t[2]];
-        six += double(a.x) * (double(b.y) * c.z - double(b.z) * c.y) + double(a.y) * (double(b.z) * c.x - double(b.x) * c.z) +
+        six += double(a.x) * (double(b.y) * c.z - double(b.z) * c.y) +
+               double(a.y) * (double(b.z) * c.x - double(b.x) * c.z) +
                double(a.z) * (double(b.x) * c.y - double(b.y) * c.x);
     }
     return six / 6;
@@ -66,7 +66,8 @@ TEST_CASE("sphere: one component, genus 0, near the truth, by either form") {
         const Reconstruction r = run(points, options);
         check_closed(r, 1, 0);
         CHECK(volume(r.mesh) == Approx(4.18879).epsilon(0.01));
-        for (const Float3& p : r.mesh.positions) CHECK(std::sqrt(p.x * p.x + p.y * p.y + p.z * p.z) == Approx(1).margin(0.03));
+        for (const Float3& p : r.mesh.positions)
+            CHECK(std::sqrt(p.x * p.x + p.y * p.y + p.z * p.z) == Approx(1).margin(0.03));
     }
 }
 
@@ -103,7 +104,8 @@ TEST_CASE("a regular grid on a cube: cospherical everywhere") {
     for (int i = 0; i <= n; ++i)
         for (int j = 0; j <= n; ++j)
             for (int k = 0; k <= n; ++k)
-                if (i % n == 0 || j % n == 0 || k % n == 0) points.push_back({i / double(n), j / double(n), k / double(n)});
+                if (i % n == 0 || j % n == 0 || k % n == 0)
+                    points.push_back({i / double(n), j / double(n), k / double(n)});
     const Reconstruction r = run(points);
     check_closed(r, 1, 0);
     CHECK(volume(r.mesh) == Approx(1).epsilon(0.02));
@@ -121,8 +123,8 @@ TEST_CASE("two spheres that touch: both are there, and nothing is pinched") {
     CHECK(survey.manifold());
     CHECK(survey.components <= 2);
     CHECK(volume(result->mesh) == Approx(2 * 4.18879).epsilon(0.02));
-    // A sample in the very point of contact has both its poles inside. What it says is wrong, and the labels may follow it
-    // (docs/reconstruction.md, "Limits"); the surface must be sound all the same.
+    // A sample in the very point of contact has both its poles inside. What it says is wrong, and the labels
+    // may follow it (docs/reconstruction.md, "Limits"); the surface must be sound all the same.
     points.push_back({0, 0, 0});
     const auto pinched = reconstruct(points);
     REQUIRE(pinched.ok());
@@ -190,7 +192,8 @@ TEST_CASE("an open sheet has one rim and no handles") {
 }
 
 TEST_CASE("every cloud of the corpus: closed, manifold, oriented") {
-    for (const char* name : {"armadillo-5k", "armadillo-20k", "rocker-arm-20k", "fandisk-20k", "armadillo-n02", "armadillo-n05", "armadillo-out5", "ocean", "distcap"}) {
+    for (const char* name : {"armadillo-5k", "armadillo-20k", "rocker-arm-20k", "fandisk-20k",
+                             "armadillo-n02", "armadillo-n05", "armadillo-out5", "ocean", "distcap"}) {
         const auto path = corpus_file(std::string("points/") + name + ".xyz");
         if (!path) continue;
         INFO(name);
@@ -206,7 +209,9 @@ TEST_CASE("every cloud of the corpus: closed, manifold, oriented") {
         CHECK(survey.manifold());
         CHECK(survey.duplicate_triangles == 0);
         if (std::strcmp(name, "ocean") != 0) CHECK(survey.components == 1);
-        if (std::strcmp(name, "rocker-arm-20k") == 0) CHECK(r.report.genus == 1);
-        else if (std::strcmp(name, "ocean") != 0) CHECK(r.report.genus == 0);
+        if (std::strcmp(name, "rocker-arm-20k") == 0)
+            CHECK(r.report.genus == 1);
+        else if (std::strcmp(name, "ocean") != 0)
+            CHECK(r.report.genus == 0);
     }
 }

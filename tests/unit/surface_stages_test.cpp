@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The stages against brute force, degenerate and hostile clouds, and what the interface promises.
-#include <catch2/catch.hpp>
-
 #include <algorithm>
+#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -31,7 +30,8 @@ Tetrahedra boxed_delaunay(const std::vector<Position>& positions, std::vector<Ve
     for (const Position& p : positions) points.push_back({p[0], p[1], p[2]});
     points = unique_points(points).points;
     std::vector<Vec3> all = points;
-    for (int k = 0; k < 8; ++k) all.push_back({k & 1 ? 10.0 : -10.0, k & 2 ? 10.0 : -10.0, k & 4 ? 10.0 : -10.0});
+    for (int k = 0; k < 8; ++k)
+        all.push_back({k & 1 ? 10.0 : -10.0, k & 2 ? 10.0 : -10.0, k & 4 ? 10.0 : -10.0});
     return tetrahedralise(all, points.size(), 1);
 }
 
@@ -55,7 +55,8 @@ TEST_CASE("Delaunay cells: empty balls, mutual neighbours, the promised order") 
         CHECK(v[1] < std::min(v[2], v[3]));
         const Vec3 a = t.points[v[0]];
         CHECK(dot(cross(t.points[v[1]] - a, t.points[v[2]] - a), t.points[v[3]] - a) > 0);
-        for (const Vec3& p : t.points) CHECK(squared_length(p - balls.centres[c]) >= balls.squared_radii[c] * (1 - 1e-7));
+        for (const Vec3& p : t.points)
+            CHECK(squared_length(p - balls.centres[c]) >= balls.squared_radii[c] * (1 - 1e-7));
         for (std::size_t k = 0; k < 4; ++k) {
             const std::uint32_t n = t.neighbours[c][k];
             if (n == kNoCell) continue;
@@ -81,7 +82,8 @@ TEST_CASE("poles are the farthest Voronoi vertices on either side, by brute forc
         }
         REQUIRE(best != kNoCell);
         for (std::uint32_t c = 0; c < t.cells.size(); ++c)
-            if (std::count(t.cells[c].begin(), t.cells[c].end(), s) && dot(balls.centres[c] - points[s], balls.centres[best] - points[s]) < 0)
+            if (std::count(t.cells[c].begin(), t.cells[c].end(), s) &&
+                dot(balls.centres[c] - points[s], balls.centres[best] - points[s]) < 0)
                 second = std::max(second, length(balls.centres[c] - points[s]));
         CHECK(length(balls.centres[poles.first[s]] - points[s]) == Approx(first));
         REQUIRE((poles.second[s] == kNoCell) == (second == 0));
@@ -100,7 +102,8 @@ TEST_CASE("labels of poles agree with the shape that was sampled") {
         for (const std::uint32_t c : *list) {
             if (c == kNoCell) continue;
             const Vec3 p = balls.centres[c];
-            const double ring = std::sqrt(p.x * p.x + p.y * p.y) - 1, depth = 0.4 - std::sqrt(ring * ring + p.z * p.z);
+            const double ring = std::sqrt(p.x * p.x + p.y * p.y) - 1,
+                         depth = 0.4 - std::sqrt(ring * ring + p.z * p.z);
             if (std::abs(depth) < 0.1) continue;  // too near the surface for samples to say
             ++judged;
             CHECK((inside[c] != 0) == (depth > 0));
@@ -117,7 +120,8 @@ TEST_CASE("any labelling has a manifold boundary") {
     for (int round = 0; round < 30; ++round) {
         std::vector<std::uint8_t> inside(t.cells.size());
         for (std::size_t c = 0; c < inside.size(); ++c) {
-            const bool box = std::any_of(t.cells[c].begin(), t.cells[c].end(), [&](std::uint32_t v) { return v >= t.samples; });
+            const bool box = std::any_of(t.cells[c].begin(), t.cells[c].end(),
+                                         [&](std::uint32_t v) { return v >= t.samples; });
             inside[c] = !box && int(random() % 30) < round;
         }
         BoundaryReport report;
@@ -153,9 +157,12 @@ TEST_CASE("the regular triangulation is empty of nearer balls, by brute force") 
     REQUIRE(diagram.cells.size() > 100);
     for (const Corners& c : diagram.cells) {
         const Vec3 a = points[c[0]], u = points[c[1]] - a, v = points[c[2]] - a, w = points[c[3]] - a;
-        const auto right = [&](Vec3 e, std::uint32_t q) { return squared_length(e) + weights[c[0]] - weights[q]; };
-        const Vec3 centre = a + (cross(v, w) * right(u, c[1]) + cross(w, u) * right(v, c[2]) + cross(u, v) * right(w, c[3])) *
-                                    (0.5 / dot(u, cross(v, w)));
+        const auto right = [&](Vec3 e, std::uint32_t q) {
+            return squared_length(e) + weights[c[0]] - weights[q];
+        };
+        const Vec3 centre =
+            a + (cross(v, w) * right(u, c[1]) + cross(w, u) * right(v, c[2]) + cross(u, v) * right(w, c[3])) *
+                    (0.5 / dot(u, cross(v, w)));
         const double power = squared_length(centre - a) - weights[c[0]];
         for (std::size_t i = 0; i < points.size(); ++i)
             CHECK(squared_length(centre - points[i]) - weights[i] >= power - 1e-6 * (1 + std::abs(power)));
@@ -171,20 +178,24 @@ TEST_CASE("clouds without a surface give an error, degenerate ones a result or a
     CHECK(code({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}) == std::string("argument"));
     CHECK(code(std::vector<Position>(50, Position{1, 2, 3})) == std::string("argument"));
     CHECK(code({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, std::nan("")}}) == std::string("argument"));
-    CHECK(code({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, std::numeric_limits<double>::infinity()}}) == std::string("argument"));
+    CHECK(code({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, std::numeric_limits<double>::infinity()}}) ==
+          std::string("argument"));
     std::vector<Position> line, plane, block, huge, spread;
     for (int i = 0; i < 40; ++i) line.push_back({double(i), 2.0 * i, -3.0 * i});
     for (int i = 0; i < 100; ++i) plane.push_back({double(i % 10), double(i / 10), 5});
     for (int i = 0; i < 125; ++i) block.push_back({double(i % 5), double(i / 5 % 5), double(i / 25)});
     for (const Position& p : sphere_points(500, {0, 0, 0}, 1e30, 27)) huge.push_back(p);
-    for (int i = 0; i < 200; ++i) spread.push_back({std::ldexp(1.0, i - 100), std::ldexp(double(i % 7), -i), double(i % 3)});
+    for (int i = 0; i < 200; ++i)
+        spread.push_back({std::ldexp(1.0, i - 100), std::ldexp(double(i % 7), -i), double(i % 3)});
     for (const auto* points : {&line, &plane, &block, &huge, &spread})
         for (const CrustMethod method : {CrustMethod::kModified, CrustMethod::kClassic}) {
             ReconstructOptions options;
             options.method = method;
             const auto r = reconstruct(*points, options);
-            if (r.ok()) check_manifold(r->mesh);
-            else CHECK(r.error().code == ErrorCode::kArgument);
+            if (r.ok())
+                check_manifold(r->mesh);
+            else
+                CHECK(r.error().code == ErrorCode::kArgument);
         }
     CHECK(code(line) == std::string("argument"));
     CHECK(code(plane) == std::string("argument"));
@@ -213,8 +224,10 @@ TEST_CASE("random clouds of any size: closed and manifold, or an error") {
                 for (double& x : p) x = std::round(x * 4) / 4;
         const auto r = reconstruct(points);
         INFO(seed);
-        if (!r.ok()) CHECK(r.error().code == ErrorCode::kArgument);
-        else check_manifold(r->mesh);
+        if (!r.ok())
+            CHECK(r.error().code == ErrorCode::kArgument);
+        else
+            check_manifold(r->mesh);
         ReconstructOptions open;
         open.open = true;
         const auto sheet = reconstruct(points, open);
@@ -269,7 +282,8 @@ TEST_CASE("stages report and can be stopped") {
     }
     for (std::size_t stop = 0; stop < names.size(); ++stop) {
         std::size_t calls = 0;
-        const auto stopped = reconstruct(points, {}, [&](std::string_view, double) { return calls++ < stop; });
+        const auto stopped =
+            reconstruct(points, {}, [&](std::string_view, double) { return calls++ < stop; });
         REQUIRE_FALSE(stopped.ok());
         CHECK(stopped.error().code == ErrorCode::kCancelled);
     }
@@ -311,7 +325,8 @@ TEST_CASE("the medial axis of a torus is its circle; dumps are VTK files of the 
         std::size_t near = 0;
         for (std::size_t i = 0; i < axis.centres.size(); ++i) {
             const auto& c = axis.centres[i];
-            const double ring = std::sqrt(c[0] * c[0] + c[1] * c[1]) - 2, off = std::sqrt(ring * ring + c[2] * c[2]);
+            const double ring = std::sqrt(c[0] * c[0] + c[1] * c[1]) - 2,
+                         off = std::sqrt(ring * ring + c[2] * c[2]);
             near += off < 0.15 && std::abs(axis.radii[i] - 0.5) < 0.15;
         }
         CHECK(double(near) > 0.9 * double(axis.centres.size()));

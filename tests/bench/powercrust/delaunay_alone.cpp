@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The vsplit authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The measure of all reconstruction times: CGAL's own Delaunay_triangulation_3 of the same points, range insertion.
+// The measure of all reconstruction times: CGAL's own Delaunay_triangulation_3 of the same points, range
+// insertion.
 #include <CGAL/Delaunay_triangulation_3.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 

@@ -1,10 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The vsplit authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Reconstruction times as markdown: the paper's Table I, the ratio to CGAL's Delaunay triangulation, scaling, and the corpus.
-// Each measurement runs in a child process of its own, so that peak memory is its own and the heap is fresh.
+// Reconstruction times as markdown: the paper's Table I, the ratio to CGAL's Delaunay triangulation, scaling,
+// and the corpus. Each measurement runs in a child process of its own, so that peak memory is its own and the
+// heap is fresh.
 //
-// bench_powercrust [--quick] [CORPUS]     times are CPU seconds, the median of three runs; peak is the process's.
+// bench_powercrust [--quick] [CORPUS]     times are CPU seconds, the median of three runs; peak is the
+// process's.
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -38,7 +40,8 @@ double cpu_seconds() {
 }
 
 struct Measured {
-    double delaunay = 0, clean = 0, modified = 0, classic = 0, peak_mb = 0, triangles = 0, genus = 0, components = 0;
+    double delaunay = 0, clean = 0, modified = 0, classic = 0, peak_mb = 0, triangles = 0, genus = 0,
+           components = 0;
 };
 
 enum Work : unsigned { kDelaunay = 1, kClean = 2, kModified = 4, kClassic = 8 };
@@ -47,7 +50,11 @@ Measured measure_here(const Positions& given, unsigned work) {
     Measured m;
     Positions positions = given;
     double start = cpu_seconds();
-    const auto lap = [&] { const double now = cpu_seconds(), d = now - start; start = now; return d; };
+    const auto lap = [&] {
+        const double now = cpu_seconds(), d = now - start;
+        start = now;
+        return d;
+    };
     const auto peak = [&] {
         rusage usage{};
         getrusage(RUSAGE_SELF, &usage);
@@ -103,10 +110,11 @@ Measured measure(const Positions& positions, unsigned work) {
 }
 
 /// Median of three by `key`, all figures of that run.
-Measured median(const Positions& positions, unsigned work, double Measured::* key) {
+Measured median(const Positions& positions, unsigned work, double Measured::*key) {
     std::vector<Measured> runs;
     for (int i = 0; i < 3; ++i) runs.push_back(measure(positions, work));
-    std::sort(runs.begin(), runs.end(), [&](const Measured& a, const Measured& b) { return a.*key < b.*key; });
+    std::sort(runs.begin(), runs.end(),
+              [&](const Measured& a, const Measured& b) { return a.*key < b.*key; });
     return runs[1];
 }
 
@@ -117,13 +125,16 @@ Positions sample(Sample which, std::size_t count) {
 }
 
 void table_one() {
-    std::printf("### Table I: classic against modified, CPU seconds\n\n| cloud | points | classic | modified | ratio | paper's ratio |\n"
-                "| --- | --- | --- | --- | --- | --- |\n");
+    std::printf(
+        "### Table I: classic against modified, CPU seconds\n\n| cloud | points | classic | modified | ratio "
+        "| paper's ratio |\n"
+        "| --- | --- | --- | --- | --- | --- |\n");
     const auto row = [](const char* name, Sample which, std::size_t count, double paper) {
         const Positions points = sample(which, count);
-        const Measured classic = median(points, kClassic, &Measured::classic), modified = median(points, kModified, &Measured::modified);
-        std::printf("| %s | %zu | %.3f | %.3f | **%.2f** | %.2f |\n", name, count, classic.classic, modified.modified,
-                    modified.modified / classic.classic, paper);
+        const Measured classic = median(points, kClassic, &Measured::classic),
+                       modified = median(points, kModified, &Measured::modified);
+        std::printf("| %s | %zu | %.3f | %.3f | **%.2f** | %.2f |\n", name, count, classic.classic,
+                    modified.modified, modified.modified / classic.classic, paper);
         std::fflush(stdout);
     };
     row("whale", Sample::kWhale, 5000, 3.52 / 6.03);
@@ -131,24 +142,29 @@ void table_one() {
 }
 
 void scaling(bool quick) {
-    std::printf("\n### Scaling: samples of the whale\n\n| points | CGAL Delaunay s | clean s | modified s | modified / Delaunay | peak MB | triangles |\n"
-                "| --- | --- | --- | --- | --- | --- | --- |\n");
+    std::printf(
+        "\n### Scaling: samples of the whale\n\n| points | CGAL Delaunay s | clean s | modified s | modified "
+        "/ Delaunay | peak MB | triangles |\n"
+        "| --- | --- | --- | --- | --- | --- | --- |\n");
     for (const std::size_t count : {5000, 20000, 100000, 500000, 1000000}) {
         if (quick && count > 100000) break;
         const Positions points = sample(Sample::kWhale, count);
         const unsigned work = kDelaunay | kClean | kModified;
         const Measured m = median(points, work, &Measured::modified);
-        std::printf("| %zu | %.3f | %.3f | %.3f | **%.2f** | %.0f | %.0f |\n", count, m.delaunay, m.clean, m.modified,
-                    m.modified / m.delaunay, m.peak_mb, m.triangles);
+        std::printf("| %zu | %.3f | %.3f | %.3f | **%.2f** | %.0f | %.0f |\n", count, m.delaunay, m.clean,
+                    m.modified, m.modified / m.delaunay, m.peak_mb, m.triangles);
         std::fflush(stdout);
     }
 }
 
 void corpus(const std::string& folder) {
-    std::printf("\n### Corpus, default options\n\n| cloud | points | CGAL Delaunay s | clean s | modified s | modified / Delaunay | classic s | triangles | genus | components |\n"
-                "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
-    for (const char* name : {"armadillo-5k", "armadillo-20k", "armadillo-100k", "rocker-arm-20k", "fandisk-20k", "armadillo-n02", "armadillo-n05",
-                             "armadillo-out5", "ocean", "distcap"}) {
+    std::printf(
+        "\n### Corpus, default options\n\n| cloud | points | CGAL Delaunay s | clean s | modified s | "
+        "modified / Delaunay | classic s | triangles | genus | components |\n"
+        "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
+    for (const char* name :
+         {"armadillo-5k", "armadillo-20k", "armadillo-100k", "rocker-arm-20k", "fandisk-20k", "armadillo-n02",
+          "armadillo-n05", "armadillo-out5", "ocean", "distcap"}) {
         const auto bytes = read_file(folder + "/points/" + name + ".xyz");
         if (!bytes.ok()) {
             std::fprintf(stderr, "%s: %s\n", name, bytes.error().describe().c_str());
@@ -159,8 +175,9 @@ void corpus(const std::string& folder) {
         const Positions& points = file->cloud.positions;
         const Measured m = median(points, kDelaunay | kClean | kModified, &Measured::modified);
         const Measured c = measure(points, kClean | kClassic);
-        std::printf("| %s | %zu | %.3f | %.3f | %.3f | **%.2f** | %.3f | %.0f | %.0f | %.0f |\n", name, points.size(), m.delaunay, m.clean,
-                    m.modified, m.modified / m.delaunay, c.classic, m.triangles, m.genus, m.components);
+        std::printf("| %s | %zu | %.3f | %.3f | %.3f | **%.2f** | %.3f | %.0f | %.0f | %.0f |\n", name,
+                    points.size(), m.delaunay, m.clean, m.modified, m.modified / m.delaunay, c.classic,
+                    m.triangles, m.genus, m.components);
         std::fflush(stdout);
     }
 }
@@ -171,8 +188,10 @@ int main(int argc, char** argv) {
     bool quick = false;
     std::string folder;
     for (int i = 1; i < argc; ++i) {
-        if (std::strcmp(argv[i], "--quick") == 0) quick = true;
-        else folder = argv[i];
+        if (std::strcmp(argv[i], "--quick") == 0)
+            quick = true;
+        else
+            folder = argv[i];
     }
     table_one();
     scaling(quick);
