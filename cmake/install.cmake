@@ -1,11 +1,13 @@
 # SPDX-FileCopyrightText: 2026 The vsplit authors
 # SPDX-License-Identifier: MIT
-# The library alone: headers, archive, CMake package. The command is installed when it was built.
+# The library alone: headers, archive, CMake package, licence. The command is installed when it was built.
 include(CMakePackageConfigHelpers)
+set(vsplit_package ${CMAKE_INSTALL_LIBDIR}/cmake/vsplit)
 install(TARGETS vsplit EXPORT vsplit-targets)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/lib/include/vsplit DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
-install(EXPORT vsplit-targets NAMESPACE vsplit:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/vsplit)
-file(WRITE ${PROJECT_BINARY_DIR}/vsplit-config.cmake
+install(EXPORT vsplit-targets NAMESPACE vsplit:: DESTINATION ${vsplit_package})
+# What a static archive needs when a stranger links it, and nothing of the baker.
+file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/vsplit-config.cmake @ONLY CONTENT
 "include(CMakeFindDependencyMacro)
 find_dependency(zstd CONFIG)
 find_dependency(draco CONFIG)
@@ -13,7 +15,11 @@ include(\${CMAKE_CURRENT_LIST_DIR}/vsplit-targets.cmake)
 ")
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/vsplit-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/vsplit-config.cmake ${PROJECT_BINARY_DIR}/vsplit-config-version.cmake
-        DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/vsplit)
+        DESTINATION ${vsplit_package})
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSES/MIT.txt DESTINATION ${CMAKE_INSTALL_DOCDIR})
 if(TARGET vsplit_command)
   install(TARGETS vsplit_command)
+  if(VSPLIT_WITH_CGAL)
+    install(FILES ${PROJECT_SOURCE_DIR}/LICENSES/GPL-3.0-or-later.txt DESTINATION ${CMAKE_INSTALL_DOCDIR})
+  endif()
 endif()

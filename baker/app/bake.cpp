@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 
+#include "cloud.hpp"
 #include "command.hpp"
 #include "input.hpp"
 #include "vsplit/bake/collapse.hpp"
@@ -19,12 +20,15 @@ namespace {
 struct BakeCommand {
     Common common;
     InputOptions input;
+    CloudOptions cloud;
     Output output;
     std::string cost = "quadric", placement = "optimal";
     std::vector<std::string> locks;
     WriteOptions write;
 
     int run() const;
+    /// The mesh to bake; if the input is a cloud of points, the surface made of it, told in `surface`.
+    Result<bake::MeshFile> load(const bake::Progress& progress, std::optional<CloudSurface>& surface, int& exit) const;
     /// The lock list as options; the reason if one is unknown.
     std::optional<std::string> set_locks(bake::CollapseOptions& options) const;
 };
@@ -45,6 +49,30 @@ std::optional<std::string> BakeCommand::set_locks(bake::CollapseOptions& options
     return std::nullopt;
 }
 
+Result<bake::MeshFile> BakeCommand::load(const bake::Progress& progress, std::optional<CloudSurface>& surface, int& exit) const {
+    const auto failed = [&](const Error& error) {
+        exit = fail_input(input.path, error);
+        return error;
+    };
+    {
+        auto bytes = bake::read_file(input.path);
+        if (!bytes) return failed(bytes.error());
+        if (is_point_cloud(*bytes, extension_of(input.path))) {
+            if (!input.weights.empty()) return failed({ErrorCode::kArgument, "a point cloud takes no --weights: reconstruct it first", Error::kNowhere, 0});
+            auto made = reconstruct_cloud(input.path, *bytes, cloud, common, false, progress, exit);
+            if (!made) return made.error();
+            bake::MeshFile file;
+            file.mesh = std::move(made->mesh);
+            file.report.format = "reconstructed from points";
+            file.report.vertices_in = file.mesh.positions.size();
+            file.report.faces_in = file.mesh.triangles.size();
+            surface = std::move(*made);
+            return file;
+        }
+    }
+    return load_mesh(input, exit);
+}
+
 int BakeCommand::run() const {
     using Clock = std::chrono::steady_clock;
     const auto start = Clock::now();
@@ -57,10 +85,11 @@ int BakeCommand::run() const {
     if (const int refused = check_output(output)) return refused;
 
     int exit = kDone;
-    auto file = load_mesh(input, exit);
+    ProgressBar bar(common);
+    std::optional<CloudSurface> surface;
+    auto file = load(bar.callback(), surface, exit);
     if (!file) return exit;
     const bake::MeshSurvey survey = bake::survey_mesh(file->mesh);
-    ProgressBar bar(common);
     auto result = bake::collapse(file->mesh, options, bar.callback());
     if (!result) return fail_input(input.path, result.error());
     const std::size_t triangles = file->mesh.triangles.size();
@@ -90,9 +119,12 @@ int BakeCommand::run() const {
                      {"collapse_cpu_seconds", result->report.collapse_cpu_seconds},
                      {"calibrate_cpu_seconds", result->report.calibrate_cpu_seconds},
                      {"peak_memory_bytes", std::uint64_t(usage.ru_maxrss) * 1024}};
+        if (surface) json["points"] = surface->report;
         if (!common.quiet) print_json(json);
         return kDone;
     }
+    if (surface)
+        for (const std::string& note : surface->notes) say(common, fmt::format("{}: {}", input.path, note));
     say(common, fmt::format("{}: {} triangles, {} vertices, {} components, {} boundary edges, {} non-manifold edges ({})", input.path,
                             with_commas(survey.triangles), with_commas(survey.vertices), with_commas(survey.components),
                             with_commas(survey.boundary_edges), with_commas(survey.non_manifold_edges), file->report.format));
@@ -117,10 +149,12 @@ void add_bake(CLI::App& app, int& exit) {
         "  vsplit bake bunny.obj -o bunny.pmesh\n"
         "  vsplit bake hero.glb --weights COLOR_0.r -o hero.pmesh     painted red = keep\n"
         "  vsplit bake scan.ply --weights scan-weights.txt --cost paper -o scan.pmesh\n"
-        "Reads OBJ, PLY, OFF, STL, glTF and GLB.");
+        "  vsplit bake scan.xyz -o scan.pmesh                         points: reconstructed first\n"
+        "Reads OBJ, PLY, OFF, STL, glTF and GLB; point clouds as .xyz .txt .pts .asc .csv .ply .pcd.");
     sub->add_option("input", command->input.path, "Mesh or scene")->required()->type_name("IN");
     command->output.add_to(*sub, "The .pmesh to write");
     command->input.add_to(*sub);
+    command->cloud.add_to(*sub);
     sub->add_option("--cost", command->cost, "What a collapse costs: quadric, or paper (docs/collapse.md)")
         ->check(CLI::IsMember({"quadric", "paper"}))
         ->capture_default_str();

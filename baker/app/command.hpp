@@ -90,6 +90,7 @@ std::string short_number(double value);
 
 /// Each registers one subcommand whose callback sets `exit`.
 void add_bake(CLI::App& app, int& exit);
+void add_reconstruct(CLI::App& app, int& exit);
 void add_info(CLI::App& app, int& exit);
 void add_extract(CLI::App& app, int& exit);
 void add_lods(CLI::App& app, int& exit);

@@ -23,6 +23,7 @@ int main(int argc, char** argv) {
     app.failure_message(CLI::FailureMessage::simple);
     int exit = kDone;
     add_bake(app, exit);
+    add_reconstruct(app, exit);
     add_extract(app, exit);
     add_lods(app, exit);
     add_info(app, exit);

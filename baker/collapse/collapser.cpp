@@ -6,6 +6,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -13,8 +14,19 @@
 namespace vsplit::bake {
 namespace {
 
+/// No edge to a hub this large is priced: its star would be walked at each of thousands of collapses around it. It shrinks as they go.
+constexpr std::size_t kHub = 1000;
+
+double seconds_now() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
 Float3 to_float(Double3 p) {
     return {float(p.x), float(p.y), float(p.z)};
+}
+
+std::uint32_t nearer_end(const EdgeStar& star, Double3 place) {
+    return length2(place - star.pv) < length2(place - star.pu) ? star.v : star.u;
 }
 
 /// Visits each neighbour of `v`; those that two triangles name come once where the fan is closed and
@@ -45,6 +57,7 @@ Collapser::Collapser(const Mesh& mesh, const CollapseOptions& options)
       strictness_{options.min_normal_cosine, options.min_quality, 60, true},
       histories_(mesh_.vertex_count()),
       targets_(mesh_.vertex_count()) {
+    unused_vertices_ = mesh_.vertex_count() - mesh_.live_vertices();
     if (!mesh.weights.empty()) {
         weights_.reserve(mesh_.vertex_count());
         for (const std::uint32_t v : mesh_.input_vertices()) weights_.push_back(mesh.weights[v]);
@@ -127,7 +140,7 @@ void Collapser::list_edges(std::uint32_t u, EdgeList& list) const {
     list.clear();
     if (mesh_.star(u).size() <= strictness_.max_valence)
         visit_neighbours(mesh_, u, list.scratch, [&](std::uint32_t v) {
-            if (!owns(u, v)) return;
+            if (!owns(u, v) || mesh_.star(v).size() > kHub) return;
             if (const Fold fold = fold_rule(mesh_, u, v); fold != Fold::kNever) list.add(v, fold);
         });
     price(u, list);
@@ -140,7 +153,9 @@ bool Collapser::attempt(std::uint32_t u, const Option& option, Bucket bucket, fl
     // What will be stored decides: the guards look at the rounded place.
     const Float3 rounded = option.fold == Fold::kIntoFirst    ? mesh_.raw_position(u)
                            : option.fold == Fold::kIntoSecond ? mesh_.raw_position(option.other)
-                                                              : mesh_.round(option.candidate.place);
+                           : options_.placement == Placement::kEndpoint
+                               ? mesh_.raw_position(nearer_end(star_, option.candidate.place))
+                               : mesh_.round(option.candidate.place);
     const Double3 place = mesh_.work(rounded);
     star_.place_at(place);
     if (!guards_.keeps_shape(star_, place, histories_, strictness_)) return false;
@@ -190,14 +205,17 @@ void Collapser::apply(const EdgeStar& star, const Option& option, Float3 place, 
     ring_edges_.clear();
     visit_neighbours(mesh_, parent, ring_, [&](std::uint32_t w) { ring_edges_.add(w, Fold::kNever); });
     for (const std::uint32_t w : ring_edges_.others)
-        if (mesh_.kind(w) != VertexKind::kInner) rebuild_shape(mesh_, w, options_.boundary_weight, ring_);
+        if (mesh_.kind(w) != VertexKind::kInner && mesh_.star(w).size() <= kHub)
+            rebuild_shape(mesh_, w, options_.boundary_weight, ring_);
     queue_.remove(child);
     reprice(parent, child, BucketQueue::bucket_of(float(option.candidate.cost)));
 }
 
 void Collapser::reprice(std::uint32_t parent, std::uint32_t child, Bucket now) {
     for (std::size_t i = 0; i < ring_edges_.others.size(); ++i)
-        ring_edges_.folds[i] = fold_rule(mesh_, parent, ring_edges_.others[i]);
+        ring_edges_.folds[i] = mesh_.star(ring_edges_.others[i]).size() > kHub
+                                   ? Fold::kNever
+                                   : fold_rule(mesh_, parent, ring_edges_.others[i]);
     price(parent, ring_edges_);
     Target best;
     for (std::size_t i = 0; i < ring_edges_.others.size(); ++i) {
@@ -343,9 +361,10 @@ bool Collapser::run(const Progress& progress) {
         }
 
     const double total = double(mesh_.triangle_count());
+    double said = 0;
     // Later passes get past what a guard stopped; the shape of the coarsest levels counts less than that
     // there is one.
-    const Strictness passes[] = {strictness_, {0.0, 1e-3, 1000, true}, {-0.5, 1e-5, 1u << 30, false}};
+    const Strictness passes[] = {strictness_, {0.0, 1e-3, 1000, true}, {-0.5, 1e-5, 2 * kHub, false}};
     for (const Strictness& strictness : passes) {
         strictness_ = strictness;
         if (&strictness != passes) {
@@ -363,9 +382,11 @@ bool Collapser::run(const Progress& progress) {
                 process(item, bucket);
             else
                 process_component(item - mesh_.vertex_count(), bucket);
-            if (progress && (count & 0x3FFF) == 0 &&
-                !progress("collapse", 1 - double(mesh_.live_triangles()) / total))
-                return false;
+            if (!progress || (count & 0x3F) != 0) continue;
+            if (const double now = seconds_now(); now - said > 0.02) {
+                said = now;
+                if (!progress("collapse", 1 - double(mesh_.live_triangles()) / total)) return false;
+            }
         }
     }
     return true;
@@ -374,6 +395,7 @@ bool Collapser::run(const Progress& progress) {
 ProgressiveMesh Collapser::finish(CollapseReport& report) {
     report.collapses = record_.size();
     report.components = components_.count();
+    report.unused_vertices = unused_vertices_;
     report.components_vanished = vanished_;
     for (std::uint32_t v = 0; v < mesh_.vertex_count(); ++v)
         report.fixed_vertices += mesh_.kind(v) == VertexKind::kFixed;
@@ -385,8 +407,10 @@ ProgressiveMesh Collapser::finish(CollapseReport& report) {
     std::vector<Target>().swap(targets_);
     paper_.reset();
     ProgressiveMesh mesh = record_.finish(mesh_, weights_, nullptr);
-    const float unit = float(1 / mesh_.scale());
-    for (Split& split : mesh.splits) split.error *= unit;
+    // An error beyond the floats stays the largest of them, so that files hold finite numbers.
+    const double unit = 1 / mesh_.scale();
+    for (Split& split : mesh.splits)
+        split.error = float(std::min(double(split.error) * unit, double(std::numeric_limits<float>::max())));
     return mesh;
 }
 

@@ -102,6 +102,7 @@ class Collapser {
     std::vector<Target> targets_;  // kNoVertex: list all again
     float error_ = 0;              // the largest so far, working units
     std::uint64_t vanished_ = 0;
+    std::uint64_t unused_vertices_ = 0;
 
     EdgeList listed_;
     std::vector<Neighbour> ring_;

@@ -92,7 +92,12 @@ Result<MeshFile> parse_mesh(std::span<const std::byte> bytes, std::string_view e
     if (!file) return file.error();
     Weld weld = options.weld;
     if (weld == Weld::kAuto) weld = file->report.format.starts_with("STL") ? Weld::kAll : Weld::kBoundary;
-    return assemble_mesh(std::move(file->soup), weld, std::move(file->report));
+    Result<MeshFile> mesh = assemble_mesh(std::move(file->soup), weld, std::move(file->report));
+    if (mesh || mesh.error().offset != Error::kNowhere) return mesh;
+    // What is missing in the whole file is missing up to its end.
+    Error error = mesh.error();
+    error.offset = bytes.size();
+    return error;
 }
 
 }  // namespace vsplit::bake

@@ -6,6 +6,7 @@
 #include <draco/compression/encode.h>
 #include <draco/mesh/mesh.h>
 
+#include <cstring>
 #include <memory>
 
 namespace vsplit {
@@ -34,10 +35,28 @@ bool read_attribute(const draco::Mesh& mesh, draco::GeometryAttribute::Type type
     return true;
 }
 
+/// Draco knows no mesh without a triangle: its floats as they are, positions, then weights.
+std::vector<std::byte> encode_points(const Mesh& base) {
+    const auto positions = std::as_bytes(std::span(base.positions)), weights = std::as_bytes(std::span(base.weights));
+    std::vector<std::byte> bytes(positions.begin(), positions.end());
+    bytes.insert(bytes.end(), weights.begin(), weights.end());
+    return bytes;
+}
+
+bool decode_points(std::span<const std::byte> bytes, std::uint32_t vertices, bool has_weights, Mesh& base) {
+    const std::size_t positions = std::size_t{vertices} * sizeof(Float3), weights = has_weights ? std::size_t{vertices} * sizeof(float) : 0;
+    if (bytes.size() != positions + weights) return false;
+    base.positions.resize(vertices);
+    base.weights.resize(has_weights ? vertices : 0);
+    if (positions > 0) std::memcpy(base.positions.data(), bytes.data(), positions);
+    if (weights > 0) std::memcpy(base.weights.data(), bytes.data() + positions, weights);
+    return true;
+}
+
 }  // namespace
 
 Result<std::vector<std::byte>> encode_base(const Mesh& base) {
-    if (base.positions.empty()) return std::vector<std::byte>{};
+    if (base.triangles.empty()) return encode_points(base);
     draco::Mesh mesh;
     mesh.set_num_points(static_cast<std::uint32_t>(base.positions.size()));
     mesh.SetNumFaces(base.triangles.size());
@@ -63,10 +82,12 @@ Result<Mesh> decode_base(std::span<const std::byte> bytes, std::uint32_t vertice
     const auto malformed = [](std::string message) {
         return Error{ErrorCode::kMalformed, std::move(message), Error::kNowhere, 0};
     };
-    if (vertices == 0) {
-        if (!bytes.empty() || triangles != 0) return malformed("the base mesh has bytes or triangles but no vertices");
-        return Mesh{};
+    if (triangles == 0) {
+        Mesh points;
+        if (!decode_points(bytes, vertices, has_weights, points)) return malformed("the base mesh has other bytes than its points need");
+        return points;
     }
+    if (vertices == 0) return malformed("the base mesh has triangles but no vertices");
     draco::DecoderBuffer buffer;
     buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     draco::Decoder decoder;

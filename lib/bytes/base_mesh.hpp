@@ -13,7 +13,7 @@
 
 namespace vsplit {
 
-/// Draco's sequential coding without quantisation: order and floats come back exactly. An empty mesh is no bytes.
+/// Draco's sequential coding without quantisation: order and floats come back exactly. A mesh without triangles is its plain floats.
 Result<std::vector<std::byte>> encode_base(const Mesh& base);
 
 /// `vertices`, `triangles` and `has_weights` are what the header announces; anything else is kMalformed.

@@ -4,6 +4,7 @@
 // Where things are in a .pmesh file of version 0 (formats/spec/pmesh-0.md), and the little-endian numbers in it.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstddef>
@@ -11,6 +12,8 @@
 #include <cstring>
 #include <span>
 #include <vector>
+
+#include "vsplit/mesh.hpp"
 
 namespace vsplit {
 
@@ -23,6 +26,20 @@ inline constexpr std::size_t kTableChecksumAt = 104;
 inline constexpr std::size_t kHeaderChecksumAt = 112;
 
 static_assert(std::endian::native == std::endian::little, "numbers are copied as they are");
+
+/// Of the full mesh; zeros for none.
+struct Bounds {
+    Float3 low, high;
+};
+inline Bounds bounds_of(std::span<const Float3> positions) {
+    Bounds box;
+    if (!positions.empty()) box = {positions[0], positions[0]};
+    for (const Float3& p : positions) {
+        box.low = {std::min(box.low.x, p.x), std::min(box.low.y, p.y), std::min(box.low.z, p.z)};
+        box.high = {std::max(box.high.x, p.x), std::max(box.high.y, p.y), std::max(box.high.z, p.z)};
+    }
+    return box;
+}
 
 /// Appends numbers, little-endian.
 class ByteWriter {

@@ -115,6 +115,9 @@ class BlockDecoder {
     }
 
   public:
+    /// The full mesh's positions, after the last block.
+    std::span<const Float3> positions() const { return current_; }
+
     void begin_with(const Mesh& base) {
         current_ = base.positions;
         current_.reserve(info_.vertices);
@@ -176,6 +179,20 @@ const char* table_fault(const FileInfo& info, std::uint64_t& offset) {
     if (before.splits_end != info.splits || before.vertices_end != info.vertices || before.triangles_end != info.triangles ||
         before.corners_end != info.corner_changes || before.moves_end != info.moves)
         return "the table does not end at the counts of the header";
+    return nullptr;
+}
+
+/// The reason if the header or the table announces other errors or bounds than the mesh has; `offset` is then where.
+const char* announcement_fault(const FileInfo& info, const ProgressiveMesh& mesh, std::span<const Float3> full, std::uint64_t& offset) {
+    offset = 92;
+    if (double(info.base_error) != error_at(mesh, 0)) return "the base mesh has another error than the header announces";
+    for (std::size_t i = 0; i < info.blocks.size(); ++i) {
+        offset = kHeaderBytes + kTableEntryBytes * i + 44;
+        if (double(info.blocks[i].error) != error_at(mesh, info.blocks[i].splits_end)) return "a block ends at another error than the table announces";
+    }
+    offset = 56;
+    const Bounds bounds = bounds_of(full);
+    if (bounds.low != info.bounds_min || bounds.high != info.bounds_max) return "the mesh has other bounds than the header announces";
     return nullptr;
 }
 
@@ -294,6 +311,8 @@ Result<ProgressiveMesh> read_progressive_mesh(std::span<const std::byte> bytes, 
         if (ZSTD_isError(size) || size != block.raw_bytes) return in_block(ErrorCode::kMalformed, "its zstd frame does not unpack");
         if (const char* fault = decoder.decode(raw, block)) return in_block(ErrorCode::kMalformed, fault);
     }
+    std::uint64_t offset = 0;
+    if (const char* fault = announcement_fault(info, mesh, decoder.positions(), offset)) return at(offset, ErrorCode::kMalformed, fault);
     if (const char* fault = progressive_mesh_fault(mesh)) return at(info.base_offset, ErrorCode::kMalformed, fault);
     return mesh;
 }

@@ -115,18 +115,6 @@ class BlockEncoder {
 
 Error cannot(std::string message) { return {ErrorCode::kArgument, std::move(message), Error::kNowhere, 0}; }
 
-/// Bounds of the full mesh; zeros for none.
-void put_bounds(ByteWriter& out, std::span<const Float3> positions) {
-    Float3 low, high;
-    if (!positions.empty()) low = high = positions[0];
-    for (const Float3& p : positions) {
-        low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-        high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-    }
-    out.put(low);
-    out.put(high);
-}
-
 }  // namespace
 
 Result<std::vector<std::byte>> write_progressive_mesh(const ProgressiveMesh& mesh, const WriteOptions& options) {
@@ -195,7 +183,9 @@ Result<std::vector<std::byte>> write_progressive_mesh(const ProgressiveMesh& mes
     file.put(static_cast<std::uint32_t>(mesh.moves.size()));
     LiveMesh full(mesh);
     full.go_to(full.max_level());
-    put_bounds(file, full.positions());
+    const Bounds bounds = bounds_of(full.positions());
+    file.put(bounds.low);
+    file.put(bounds.high);
     file.put(data_offset);
     file.put(static_cast<std::uint32_t>(base_bytes->size()));
     file.put(static_cast<float>(error_at(mesh, 0)));

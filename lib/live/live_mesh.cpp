@@ -67,6 +67,11 @@ Mesh LiveMesh::snapshot() const {
     return {{p.begin(), p.end()}, {t.begin(), t.end()}, {w.begin(), w.end()}};
 }
 
+ProgressiveMesh LiveMesh::release() {
+    go_to(0);
+    return std::exchange(mesh_, {});
+}
+
 Mesh cut(const ProgressiveMesh& mesh, std::size_t level) {
     LiveMesh live(mesh);
     live.go_to(level);

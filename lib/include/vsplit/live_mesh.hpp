@@ -38,6 +38,9 @@ class LiveMesh {
     /// values (that is how they are undone), and `triangles` the current corners.
     const ProgressiveMesh& state() const { return mesh_; }
 
+    /// Gives the progressive mesh back as it was given, at level 0; the live mesh is empty afterwards.
+    ProgressiveMesh release();
+
   private:
     void refine();
     void coarsen();

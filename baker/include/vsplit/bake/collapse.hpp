@@ -56,6 +56,7 @@ struct CollapseOptions {
 struct CollapseReport {
     std::uint64_t collapses = 0;
     std::uint64_t components = 0;           ///< Of the input.
+    std::uint64_t unused_vertices = 0;      ///< That no triangle uses: left out of the record.
     std::uint64_t components_vanished = 0;  ///< Left out of the base mesh; one split brings each back.
     std::uint64_t fixed_vertices = 0;       ///< Non-manifold corners, locked, or of infinite weight: never removed.
     std::string stopped_by;                 ///< Why there is no coarser base: "every edge is guarded or would change the topology".
@@ -70,7 +71,7 @@ struct CollapseResult {
 
 /// Collapses edges by ascending cost until none is left that keeps the topology, recording each. `mesh` must be sound
 /// (mesh_fault() null): anything else is kArgument. Weights of the mesh (painted; 1 if none) multiply the cost of their vertices,
-/// average on a collapse, and a vertex of infinite weight never moves nor goes. The result is the same for any number of threads.
+/// average on a collapse, and a vertex of infinite weight never moves nor goes. Vertices that no triangle uses are left out and counted. The result is the same for any number of threads.
 /// Works on up to 2^30 triangles; memory about 150 bytes a triangle.
 Result<CollapseResult> collapse(const Mesh& mesh, const CollapseOptions& options = {}, const Progress& progress = {});
 

@@ -1,0 +1,12 @@
+# SPDX-FileCopyrightText: 2026 The vsplit authors
+# SPDX-License-Identifier: MIT
+# The documented programs as a stranger compiles them: strict, and without exceptions and RTTI as engines are.
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/examples)
+foreach(name levels first_bytes by_hand)
+  add_executable(${name} ${EXAMPLES}/${name}.cpp)
+endforeach()
+add_executable(refusing ${CMAKE_CURRENT_LIST_DIR}/refusing.cpp)
+foreach(name levels first_bytes by_hand refusing)
+  target_link_libraries(${name} PRIVATE vsplit::vsplit)
+  target_compile_options(${name} PRIVATE -Wall -Wextra -Wpedantic -Werror -fno-exceptions -fno-rtti)
+endforeach()

@@ -1,0 +1,333 @@
+// SPDX-FileCopyrightText: 2026 The vsplit authors
+// SPDX-License-Identifier: MIT
+//
+// Files whose checksums are right and whose contents lie: an error, and never more memory than Limits allow.
+#include <malloc.h>
+#include <zstd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <new>
+#include <random>
+
+#include "family.hpp"
+#include "naive_record.hpp"
+#include "pmesh_bytes.hpp"
+#include "vsplit/read.hpp"
+#include "vsplit/write.hpp"
+
+// All memory of this executable is counted. Not inlined, or the compiler takes malloc() and delete for a
+// mismatch.
+namespace {
+std::atomic<std::size_t> live_bytes{0}, peak_bytes{0};
+}
+[[gnu::noinline]] void* operator new(std::size_t size) {
+    void* p = std::malloc(size ? size : 1);
+    if (!p) throw std::bad_alloc();
+    const std::size_t live = live_bytes += malloc_usable_size(p);
+    if (live > peak_bytes) peak_bytes = live;
+    return p;
+}
+[[gnu::noinline]] void operator delete(void* p) noexcept {
+    if (p) live_bytes -= malloc_usable_size(p);
+    std::free(p);
+}
+void operator delete(void* p, std::size_t) noexcept {
+    operator delete(p);
+}
+[[gnu::noinline]] void* operator new[](std::size_t size) {
+    return operator new(size);
+}
+[[gnu::noinline]] void operator delete[](void* p) noexcept {
+    operator delete(p);
+}
+void operator delete[](void* p, std::size_t) noexcept {
+    operator delete(p);
+}
+
+// The sanitizer's own nothrow form would not count, and be freed by another hand.
+[[gnu::noinline]] void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
+    void* p = std::malloc(size ? size : 1);
+    if (p) live_bytes += malloc_usable_size(p);
+    return p;
+}
+void* operator new[](std::size_t size, const std::nothrow_t& tag) noexcept { return operator new(size, tag); }
+void operator delete(void* p, const std::nothrow_t&) noexcept { operator delete(p); }
+void operator delete[](void* p, const std::nothrow_t&) noexcept { operator delete(p); }
+
+using namespace vsplit;
+using namespace vsplit::test;
+
+namespace {
+
+constexpr std::size_t kMiB = std::size_t{1} << 20;
+/// Above what Limits allow: messages, the table, Draco's small change.
+constexpr std::size_t kSlack = kMiB;
+
+struct Hostile {
+    bool ok;
+    Error error;
+    std::size_t peak;  ///< Bytes on top of what was there before.
+};
+
+Hostile read_hostile(const Bytes& bytes, std::uint64_t max_bytes = 64 * kMiB) {
+    const std::size_t before = live_bytes;
+    peak_bytes = before;
+    Hostile result{true, {}, 0};
+    {
+        const auto read = read_progressive_mesh(bytes, Limits{max_bytes});
+        if (!read.ok())
+            result = {false, read.error(), 0};
+        else if (progressive_mesh_fault(*read))
+            FAIL("an unsound mesh was read: " << progressive_mesh_fault(*read));
+    }
+    result.peak = peak_bytes - before;
+    return result;
+}
+
+/// An error whose offset is in the file, and no memory to speak of.
+void require_refused(const Bytes& bytes, const std::string& what, std::size_t peak = kSlack) {
+    const Hostile h = read_hostile(bytes);
+    if (h.ok || h.error.offset > bytes.size() || h.peak > peak) {
+        CAPTURE(what, h.ok, h.error.describe(), h.peak);
+        CHECK_FALSE(h.ok);
+        if (!h.ok) CHECK(h.error.offset <= bytes.size());
+        CHECK(h.peak <= peak);
+    }
+}
+
+/// One block, weights.
+Bytes good_file(FileInfo& info) {
+    Mesh mesh = make_sphere(10, 7);
+    mesh.weights = some_weights(mesh.positions.size());
+    auto bytes = write_progressive_mesh(naive_record(mesh, 3, 50), {});
+    REQUIRE(bytes.ok());
+    auto read = read_info(*bytes);
+    REQUIRE(read.ok());
+    REQUIRE(read->blocks.size() == 1);
+    info = *read;
+    return *std::move(bytes);
+}
+
+Bytes packed(std::span<const std::byte> raw) {
+    Bytes out(ZSTD_compressBound(raw.size()));
+    out.resize(ZSTD_compress(out.data(), out.size(), raw.data(), raw.size(), 9));
+    return out;
+}
+
+Bytes unpacked(const Bytes& file, const BlockInfo& block) {
+    Bytes raw(block.raw_bytes);
+    REQUIRE(ZSTD_decompress(raw.data(), raw.size(), file.data() + block.offset, block.bytes) == raw.size());
+    return raw;
+}
+
+}  // namespace
+
+TEST_CASE("A lying header is refused before memory is taken") {
+    FileInfo info;
+    const Bytes good = good_file(info);
+    REQUIRE(read_hostile(good).ok);
+    const std::size_t fields[] = {kBlockCountAt, kVerticesAt, kTrianglesAt, kBaseVerticesAt, kBaseTrianglesAt,
+                                  kSplitsAt,     kCornersAt,  kMovesAt,     kBaseBytesAt};
+    for (const std::size_t field : fields) {
+        const auto now = get<std::uint32_t>(good, field);
+        for (const std::uint32_t value :
+             {0u, now - 1, now + 1, 2 * now, 0x00FFFFFFu, 0x10000000u, 0x3FFFFFFEu, 0x3FFFFFFFu, 0x7FFFFFFFu,
+              0x80000000u, 0xFFFFFFFEu, 0xFFFFFFFFu}) {
+            Bytes bytes = good;
+            put_at(bytes, field, value);
+            reseal(bytes);
+            require_refused(bytes,
+                            "header field at " + std::to_string(field) + " = " + std::to_string(value));
+        }
+    }
+    for (const std::size_t field : {kFileBytesAt, kBaseOffsetAt})
+        for (const std::uint64_t value :
+             {std::uint64_t{0}, std::uint64_t{1}, get<std::uint64_t>(good, field) + 1,
+              get<std::uint64_t>(good, field) - 1, std::uint64_t{1} << 40, ~std::uint64_t{0},
+              ~std::uint64_t{0} - 100}) {
+            Bytes bytes = good;
+            put_at(bytes, field, value);
+            reseal(bytes);
+            require_refused(bytes,
+                            "header field at " + std::to_string(field) + " = " + std::to_string(value));
+        }
+    const float inf = std::numeric_limits<float>::infinity();
+    for (const float value : {-1.0f, std::numeric_limits<float>::quiet_NaN(), inf, -inf, info.base_error * 2,
+                              info.base_error / 2}) {
+        Bytes bytes = good;
+        put_at(bytes, kBaseErrorAt, value);
+        reseal(bytes);
+        require_refused(bytes, "base error = " + std::to_string(value));
+    }
+    for (std::size_t i = 0; i < 6; ++i)
+        for (const float value : {std::numeric_limits<float>::quiet_NaN(), inf, 0.125f}) {
+            Bytes bytes = good;
+            put_at(bytes, kBoundsAt + 4 * i, value);
+            reseal(bytes);
+            require_refused(bytes, "bound " + std::to_string(i) + " = " + std::to_string(value));
+        }
+}
+
+TEST_CASE("A lying table is refused before memory is taken") {
+    FileInfo info;
+    const Bytes good = good_file(info);
+    for (std::size_t field = 0; field < kTableEntryBytes; field += 4) {
+        if (field == kEntryChecksumAt || field == kEntryChecksumAt + 4) continue;  // below
+        const auto now = get<std::uint32_t>(good, entry_at(0) + field);
+        for (const std::uint32_t value :
+             {0u, now - 1, now + 1, 2 * now + 1, 0x00FFFFFFu, 0x10000000u, 0x7FFFFFFFu, 0xFFFFFFFFu}) {
+            if (value == now) continue;
+            Bytes bytes = good;
+            put_at(bytes, entry_at(0) + field, value);
+            reseal(bytes);
+            require_refused(bytes, "table field at " + std::to_string(field) + " = " + std::to_string(value));
+            // And with the header lying along.
+            const std::size_t header[] = {kSplitsAt, kVerticesAt, kTrianglesAt, kCornersAt, kMovesAt};
+            if (field >= kEntrySplitsAt && field < kEntrySplitsAt + 20) {
+                put_at(bytes, header[(field - kEntrySplitsAt) / 4], value);
+                reseal(bytes);
+                require_refused(bytes, "table and header, field at " + std::to_string(field) + " = " +
+                                           std::to_string(value));
+            }
+        }
+    }
+    Bytes bytes = good;
+    put_at(bytes, entry_at(0) + kEntryChecksumAt, std::uint64_t{0});
+    reseal(bytes);
+    require_refused(bytes, "checksum");
+}
+
+TEST_CASE("A block that unpacks to a flood is refused") {
+    FileInfo info;
+    const Bytes good = good_file(info);
+    const Bytes zeros(48 * kMiB);
+    const Bytes bomb = packed(zeros);
+    REQUIRE(bomb.size() < 64 * 1024);
+    // Honest about its size and within the limit: unpacked, and nothing else taken.
+    require_refused(with_block(good, info, bomb, std::uint32_t(zeros.size())), "bomb within the limit",
+                    49 * kMiB);
+    // Over the limit: nothing is taken.
+    const Hostile over = read_hostile(with_block(good, info, bomb, std::uint32_t(zeros.size())), 16 * kMiB);
+    REQUIRE_FALSE(over.ok);
+    REQUIRE(over.error.code == ErrorCode::kLimit);
+    REQUIRE(over.peak < kSlack);
+    // The table says less than the frame, and more.
+    require_refused(with_block(good, info, bomb, info.blocks[0].raw_bytes), "bomb that pretends to be small");
+    require_refused(with_block(good, info, bomb, 0xFFFFFFFFu), "bomb that pretends to be larger");
+    // Counts that fill what the bomb could hold.
+    Bytes bytes = with_block(good, info, bomb, std::uint32_t(zeros.size()));
+    put_at(bytes, kSplitsAt, std::uint32_t{20'000'000});
+    put_at(bytes, entry_at(0) + kEntrySplitsAt, std::uint32_t{20'000'000});
+    put_at(bytes, kVerticesAt, std::uint32_t{20'000'000});
+    put_at(bytes, entry_at(0) + kEntrySplitsAt + 4, std::uint32_t{20'000'000});
+    reseal(bytes);
+    require_refused(bytes, "counts of a bomb");
+    // A frame that does not say its size, and no frame at all.
+    Bytes streamed(ZSTD_compressBound(1000));
+    ZSTD_CCtx* context = ZSTD_createCCtx();
+    ZSTD_CCtx_setParameter(context, ZSTD_c_contentSizeFlag, 0);
+    const Bytes raw = unpacked(good, info.blocks[0]);
+    streamed.resize(ZSTD_compressBound(raw.size()));
+    streamed.resize(ZSTD_compress2(context, streamed.data(), streamed.size(), raw.data(), raw.size()));
+    ZSTD_freeCCtx(context);
+    require_refused(with_block(good, info, streamed, std::uint32_t(raw.size())), "frame without a size");
+    require_refused(with_block(good, info, raw, std::uint32_t(raw.size())), "no frame");
+    // Two frames, the second behind the first.
+    Bytes two = packed(raw);
+    const Bytes second = packed(Bytes(10));
+    two.insert(two.end(), second.begin(), second.end());
+    require_refused(with_block(good, info, two, std::uint32_t(raw.size())), "two frames");
+}
+
+TEST_CASE("Columns that lie are refused or make a sound mesh") {
+    FileInfo info;
+    const Bytes good = good_file(info);
+    const Bytes raw = unpacked(good, info.blocks[0]);
+    REQUIRE(read_hostile(with_block(good, info, packed(raw), std::uint32_t(raw.size()))).ok);
+    std::mt19937 random(11);
+    std::size_t refused = 0, tried = 0;
+    for (std::size_t at = 0; at < raw.size(); ++at)
+        for (const int value : {0x00, 0x7F, 0x80, 0xFF, int(random() & 0xFF)}) {
+            if (raw[at] == std::byte(value)) continue;
+            Bytes forged = raw;
+            forged[at] = std::byte(value);
+            const Bytes bytes = with_block(good, info, packed(forged), std::uint32_t(forged.size()));
+            const Hostile h = read_hostile(bytes);
+            ++tried;
+            refused += !h.ok;
+            if (!h.ok && h.error.offset > bytes.size()) FAIL("offset outside the file, raw byte " << at);
+            if (h.peak > kSlack) FAIL("took " << h.peak << " bytes, raw byte " << at);
+            if (h.ok && at < 4 * 17) FAIL("a column's size was changed and nobody noticed, raw byte " << at);
+        }
+    REQUIRE(refused * 4 > tried);
+    for (std::size_t size = 0; size < raw.size(); size += 7) {
+        const Bytes cut(raw.begin(), raw.begin() + std::ptrdiff_t(size));
+        if (!cut.empty())
+            require_refused(with_block(good, info, packed(cut), std::uint32_t(size)),
+                            "columns cut at " + std::to_string(size));
+    }
+}
+
+TEST_CASE("Garbage for a base mesh is refused without a flood") {
+    FileInfo info;
+    const Bytes good = good_file(info);
+    const Bytes base(good.begin() + std::ptrdiff_t(info.base_offset),
+                     good.begin() + std::ptrdiff_t(info.base_offset + info.base_bytes));
+    REQUIRE(read_hostile(with_base(good, info, base)).ok);
+    const auto try_base = [&](const Bytes& forged, bool must_fail, const std::string& what) {
+        const Bytes bytes = with_base(good, info, forged);
+        const Hostile h = read_hostile(bytes);
+        const bool good_answer =
+            (!must_fail || !h.ok) && (h.ok || h.error.offset <= bytes.size()) && h.peak <= 64 * kMiB;
+        if (!good_answer) {
+            CAPTURE(what, h.ok, h.error.describe(), h.peak);
+            CHECK(good_answer);
+        }
+    };
+    std::mt19937 random(12);
+    try_base({}, true, "nothing");
+    for (const std::size_t size : {1u, 10u, 11u, 100u, 5000u}) {
+        Bytes garbage(size);
+        for (std::byte& b : garbage) b = std::byte(random());
+        try_base(garbage, true, "garbage of " + std::to_string(size));
+        // Behind Draco's own head.
+        std::copy_n(base.begin(), std::min<std::size_t>(size, 11), garbage.begin());
+        try_base(garbage, true, "garbage behind a head, " + std::to_string(size));
+    }
+    for (std::size_t size = 0; size < base.size(); ++size)
+        try_base(Bytes(base.begin(), base.begin() + std::ptrdiff_t(size)), true,
+                 "cut at " + std::to_string(size));
+    for (std::size_t at = 0; at < base.size(); ++at)
+        for (const int value : {0x00, 0x01, 0x7F, 0x80, 0xFF, int(random() & 0xFF)}) {
+            Bytes forged = base;
+            forged[at] = std::byte(value);
+            try_base(forged, false, "byte " + std::to_string(at) + " = " + std::to_string(value));
+        }
+    // Four bytes at once: counts of Draco's that go to the billions.
+    for (std::size_t at = 5; at + 5 <= base.size(); ++at) {
+        Bytes forged = base;
+        for (std::size_t i = 0; i < 4; ++i) forged[at + i] = std::byte{0xFF};
+        forged[at + 4] = std::byte{0x0F};
+        try_base(forged, false, "run of ones at " + std::to_string(at));
+    }
+}
+
+TEST_CASE("Random bytes behind the magic are refused") {
+    std::mt19937 random(13);
+    for (int i = 0; i < 2000; ++i) {
+        Bytes bytes(kHeaderBytes + random() % 400);
+        for (std::byte& b : bytes) b = std::byte(random());
+        std::copy(reinterpret_cast<const std::byte*>(kMagic.data()),
+                  reinterpret_cast<const std::byte*>(kMagic.data()) + kMagic.size(), bytes.begin());
+        put_at(bytes, 8, kVersion);
+        put_at(bytes, 12, std::uint32_t(random() & 1));
+        put_at(bytes, kBlockCountAt, std::uint32_t(random() % 4));
+        reseal(bytes);
+        require_refused(bytes, "random " + std::to_string(i));
+    }
+}
