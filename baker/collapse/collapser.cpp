@@ -14,7 +14,8 @@
 namespace vsplit::bake {
 namespace {
 
-/// No edge to a hub this large is priced: its star would be walked at each of thousands of collapses around it. It shrinks as they go.
+/// No edge to a hub this large is priced: its star would be walked at each of thousands of collapses around
+/// it. It shrinks as they go.
 constexpr std::size_t kHub = 1000;
 
 double seconds_now() {
@@ -253,11 +254,15 @@ void Collapser::prefetch() const {
     };
     const auto nothing = [](std::uint32_t) {};
     const auto neighbours = [&](std::uint32_t v) {
-        for (const std::uint32_t t : mesh_.star(v))
-            for (const std::uint32_t w : mesh_.triangle(t)) {
-                mesh_.prefetch_vertex(w);
-                fetch_ahead(&histories_[w]);
-            }
+        fetch_ahead(&histories_[v]);
+        for (const std::uint32_t t : mesh_.star(v)) {
+            // Of a closed fan, the next corner of every triangle is every neighbour.
+            const Triangle& c = mesh_.triangle(t);
+            const std::uint32_t w = c[0] == v ? c[1] : c[1] == v ? c[2] : c[0];
+            mesh_.prefetch_vertex(w);
+            fetch_ahead(&histories_[w]);
+            fetch_ahead(&targets_[w]);
+        }
     };
     if (const std::uint32_t v = queue_.peek(20); v < vertices) {
         mesh_.prefetch_vertex(v);
