@@ -321,8 +321,8 @@ void Collapser::process_component(std::uint32_t component, Bucket bucket) {
     if (!components_.may_vanish(component)) return;
     if (components_.live_triangles(component) > Components::kMaxVanishing) {
         // Not small enough yet; again when all costs have doubled.
-        if (bucket + 4 < BucketQueue::bucket_of(kNeverCost))
-            queue_.push(component_item(component), Bucket(bucket + 4));
+        if (bucket + 16 < BucketQueue::bucket_of(kNeverCost))
+            queue_.push(component_item(component), Bucket(bucket + 16));
         return;
     }
     const auto vertices = components_.live_vertices(mesh_, component);

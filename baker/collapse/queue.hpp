@@ -25,7 +25,7 @@ class BucketQueue {
     static Bucket bucket_of(float cost) {
         if (!(cost > 0)) return 0;
         return static_cast<Bucket>(
-            std::min<std::uint32_t>(std::bit_cast<std::uint32_t>(cost) >> 21, kBuckets - 1));
+            std::min<std::uint32_t>(std::bit_cast<std::uint32_t>(cost) >> 19, kBuckets - 1));
     }
 
     void push(std::uint32_t item, Bucket bucket) {
@@ -67,8 +67,8 @@ class BucketQueue {
     }
 
   private:
-    static constexpr std::uint32_t kBuckets =
-        1024;  // the sign-free upper 11 bits of a float: exponent and two bits of mantissa
+    // The upper 13 bits of a float, which has no sign: exponent and four bits of mantissa.
+    static constexpr std::uint32_t kBuckets = 4096;
 
     std::vector<Bucket> slots_;
     std::vector<std::vector<std::uint32_t>> buckets_;
