@@ -12,11 +12,12 @@
 namespace vsplit::ruler {
 namespace {
 
-/// Points are taken in blocks of this many; inside a block the last hit is the guess for the next. The blocks, not the threads,
-/// decide the order of every sum.
+/// Points are taken in blocks of this many; inside a block the last hit is the guess for the next. The
+/// blocks, not the threads, decide the order of every sum.
 constexpr std::size_t kBlock = 1024;
 
-/// A number in [0, 1) that depends on the seed and the counter alone (SplitMix64: Steele, Lea and Flood, OOPSLA 2014).
+/// A number in [0, 1) that depends on the seed and the counter alone (SplitMix64: Steele, Lea and Flood,
+/// OOPSLA 2014).
 double random_unit(std::uint64_t seed, std::uint64_t counter) {
     std::uint64_t z = seed * 0xD1342543DE82EF95ull + counter * 0x9E3779B97F4A7C15ull + 0x9E3779B97F4A7C15ull;
     z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ull;
@@ -39,7 +40,8 @@ Sums over_blocks(std::size_t count, const Visit& visit) {
     tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t block) {
         Sums sums;
         std::uint32_t guess = TriangleTree::kNoGuess;
-        for (std::size_t i = block * kBlock; i < std::min(count, (block + 1) * kBlock); ++i) visit(i, sums, guess);
+        for (std::size_t i = block * kBlock; i < std::min(count, (block + 1) * kBlock); ++i)
+            visit(i, sums, guess);
         blocks[block] = sums;
     });
     Sums total;
@@ -58,7 +60,8 @@ Sums over_blocks(std::size_t count, const Visit& visit) {
 OneWay Ruler::one_way(const Mesh& from, const Mesh& to, const TriangleTree& tree, std::uint64_t seed) const {
     std::vector<double> area_until(from.triangles.size());
     double area = 0;
-    for (std::size_t i = 0; i < area_until.size(); ++i) area_until[i] = area += 0.5 * length(area_vector(from, from.triangles[i]));
+    for (std::size_t i = 0; i < area_until.size(); ++i)
+        area_until[i] = area += 0.5 * length(area_vector(from, from.triangles[i]));
     const std::size_t count = options_.samples;
     const Sums samples = over_blocks(count, [&](std::size_t i, Sums& sums, std::uint32_t& guess) {
         const double at = area * (double(i) + random_unit(seed, 3 * i)) / double(count);
@@ -66,7 +69,8 @@ OneWay Ruler::one_way(const Mesh& from, const Mesh& to, const TriangleTree& tree
         const auto index = std::min(std::size_t(found - area_until.begin()), area_until.size() - 1);
         const Triangle& t = from.triangles[index];
         const double u = std::sqrt(random_unit(seed, 3 * i + 1)), w = random_unit(seed, 3 * i + 2);
-        const Vec3 point = to_vec(from.positions[t[0]]) * (1 - u) + to_vec(from.positions[t[1]]) * (u * (1 - w)) +
+        const Vec3 point = to_vec(from.positions[t[0]]) * (1 - u) +
+                           to_vec(from.positions[t[1]]) * (u * (1 - w)) +
                            to_vec(from.positions[t[2]]) * (u * w);
         const TriangleTree::Hit hit = tree.closest(point, guess);
         guess = hit.slot;
@@ -82,13 +86,15 @@ OneWay Ruler::one_way(const Mesh& from, const Mesh& to, const TriangleTree& tree
     std::vector<char> used(from.positions.size(), 0);
     for (const Triangle& t : from.triangles)
         for (const std::uint32_t v : t) used[v] = 1;
-    const Sums vertices = over_blocks(from.positions.size(), [&](std::size_t i, Sums& sums, std::uint32_t& guess) {
-        if (!used[i]) return;
-        const TriangleTree::Hit hit = tree.closest(to_vec(from.positions[i]), guess);
-        guess = hit.slot;
-        sums.max2 = std::max(sums.max2, hit.distance2);
-    });
-    return {samples.distance / double(count), std::sqrt(samples.squared / double(count)), std::sqrt(std::max(samples.max2, vertices.max2)),
+    const Sums vertices =
+        over_blocks(from.positions.size(), [&](std::size_t i, Sums& sums, std::uint32_t& guess) {
+            if (!used[i]) return;
+            const TriangleTree::Hit hit = tree.closest(to_vec(from.positions[i]), guess);
+            guess = hit.slot;
+            sums.max2 = std::max(sums.max2, hit.distance2);
+        });
+    return {samples.distance / double(count), std::sqrt(samples.squared / double(count)),
+            std::sqrt(std::max(samples.max2, vertices.max2)),
             samples.angles ? samples.degrees / double(samples.angles) : 0};
 }
 

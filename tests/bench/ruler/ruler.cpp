@@ -17,12 +17,15 @@ std::optional<Error> refusal(const Mesh& mesh) {
         for (const std::uint32_t v : t) {
             if (v >= mesh.positions.size()) return refuse("a triangle names a vertex that is not there");
             const Float3& p = mesh.positions[v];
-            if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) return refuse("a corner is not finite");
+            if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
+                return refuse("a corner is not finite");
         }
     return std::nullopt;
 }
 
-auto key(const Float3& p) { return std::tuple(p.x, p.y, p.z); }
+auto key(const Float3& p) {
+    return std::tuple(p.x, p.y, p.z);
+}
 
 Triangle least_first(Triangle t) {
     std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
@@ -43,18 +46,21 @@ double box_diagonal(const Mesh& mesh) {
 }  // namespace
 
 Result<Ruler> Ruler::over(const Mesh& reference, const RulerOptions& options) {
-    if (options.samples == 0) return Error{ErrorCode::kArgument, "no samples to measure with", Error::kNowhere, 0};
+    if (options.samples == 0)
+        return Error{ErrorCode::kArgument, "no samples to measure with", Error::kNowhere, 0};
     if (auto error = refusal(reference)) return std::move(*error);
     return Ruler(reference, options);
 }
 
 Ruler::Ruler(const Mesh& reference, const RulerOptions& options)
     : reference_(reference), options_(options), tree_(reference_), diagonal_(box_diagonal(reference_)) {
-    for (const Triangle& t : reference_.triangles) by_position_.insert(by_position_.end(), t.begin(), t.end());
+    for (const Triangle& t : reference_.triangles)
+        by_position_.insert(by_position_.end(), t.begin(), t.end());
     std::sort(by_position_.begin(), by_position_.end());
     by_position_.erase(std::unique(by_position_.begin(), by_position_.end()), by_position_.end());
-    std::stable_sort(by_position_.begin(), by_position_.end(),
-                     [&](std::uint32_t a, std::uint32_t b) { return key(reference_.positions[a]) < key(reference_.positions[b]); });
+    std::stable_sort(by_position_.begin(), by_position_.end(), [&](std::uint32_t a, std::uint32_t b) {
+        return key(reference_.positions[a]) < key(reference_.positions[b]);
+    });
     sorted_triangles_.reserve(reference_.triangles.size());
     for (const Triangle& t : reference_.triangles) {
         Triangle corners;
@@ -65,8 +71,9 @@ Ruler::Ruler(const Mesh& reference, const RulerOptions& options)
 }
 
 std::uint32_t Ruler::reference_vertex(Float3 position) const {
-    const auto found = std::lower_bound(by_position_.begin(), by_position_.end(), position,
-                                        [&](std::uint32_t v, const Float3& p) { return key(reference_.positions[v]) < key(p); });
+    const auto found = std::lower_bound(
+        by_position_.begin(), by_position_.end(), position,
+        [&](std::uint32_t v, const Float3& p) { return key(reference_.positions[v]) < key(p); });
     return found != by_position_.end() && reference_.positions[*found] == position ? *found : 0xFFFFFFFFu;
 }
 
@@ -86,7 +93,8 @@ Result<Measurement> Ruler::measure(const Mesh& mesh) const {
     m.from_reference = one_way(reference_, mesh, tree, options_.seed);
     m.to_reference = one_way(mesh, reference_, tree_, options_.seed + 7);
     m.mean = 0.5 * (m.from_reference.mean + m.to_reference.mean);
-    m.rms = std::sqrt(0.5 * (m.from_reference.rms * m.from_reference.rms + m.to_reference.rms * m.to_reference.rms));
+    m.rms = std::sqrt(
+        0.5 * (m.from_reference.rms * m.from_reference.rms + m.to_reference.rms * m.to_reference.rms));
     m.max = std::max(m.from_reference.max, m.to_reference.max);
     m.normal_degrees = 0.5 * (m.from_reference.normal_degrees + m.to_reference.normal_degrees);
     m.shape = shape_of(mesh);

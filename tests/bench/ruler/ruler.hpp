@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The vsplit authors
 // SPDX-License-Identifier: MIT
 //
-// The ruler: how far a mesh is from a reference, both ways, and what is wrong with it (after Cignoni, Rocchini and Scopigno,
-// Metro: Measuring Error on Simplified Surfaces, 1998).
+// The ruler: how far a mesh is from a reference, both ways, and what is wrong with it (after Cignoni,
+// Rocchini and Scopigno, Metro: Measuring Error on Simplified Surfaces, 1998).
 #pragma once
 
 #include <cstddef>
@@ -23,30 +23,36 @@ struct RulerOptions {
 /// Distances in the object's units, from samples of one surface to the closest points of the other.
 struct OneWay {
     double mean = 0, rms = 0;
-    double max = 0;             ///< Over the samples and every vertex.
-    double normal_degrees = 0;  ///< Mean angle between the normal at the sample and that of the closest triangle.
+    double max = 0;  ///< Over the samples and every vertex.
+    double normal_degrees =
+        0;  ///< Mean angle between the normal at the sample and that of the closest triangle.
 };
 
-/// Counts of a mesh, and of what the reference did not have: a triangle whose three corners are where a triangle of the reference
-/// has them is the reference's own.
+/// Counts of a mesh, and of what the reference did not have: a triangle whose three corners are where a
+/// triangle of the reference has them is the reference's own.
 struct Shape {
     std::uint64_t vertices = 0;  ///< Used ones.
     std::uint64_t triangles = 0, components = 0, boundary_edges = 0, non_manifold_edges = 0;
-    std::uint64_t degenerate = 0;  ///< A corner twice, quality below 1e-6, or area below 1e-14 of the squared diagonal.
-    std::uint64_t flipped = 0;     ///< Opposes the closest triangle of the reference at its centre and three points around it.
-    std::uint64_t folded = 0;      ///< Edges whose two triangles lie back on each other: cosine of the normals below -0.95.
+    std::uint64_t degenerate =
+        0;  ///< A corner twice, quality below 1e-6, or area below 1e-14 of the squared diagonal.
+    std::uint64_t flipped =
+        0;  ///< Opposes the closest triangle of the reference at its centre and three points around it.
+    std::uint64_t folded =
+        0;  ///< Edges whose two triangles lie back on each other: cosine of the normals below -0.95.
     std::uint64_t new_degenerate = 0, new_flipped = 0, new_folded = 0;
-    double quality_min = 0, quality_mean = 0;  ///< 4 sqrt(3) area / (sum of squared edges): 1 equilateral, 0 a sliver.
+    double quality_min = 0,
+           quality_mean = 0;  ///< 4 sqrt(3) area / (sum of squared edges): 1 equilateral, 0 a sliver.
 };
 
 struct Measurement {
     OneWay from_reference, to_reference;
-    double mean = 0, rms = 0, max = 0, normal_degrees = 0;  ///< Both ways: the mean of the means, the greater maximum.
+    double mean = 0, rms = 0, max = 0,
+           normal_degrees = 0;  ///< Both ways: the mean of the means, the greater maximum.
     Shape shape;
 };
 
-/// Measures meshes against one reference. The same numbers for any number of threads (oneTBB). Building one runs on the calling
-/// thread alone, so that a process may build a ruler and then fork.
+/// Measures meshes against one reference. The same numbers for any number of threads (oneTBB). Building one
+/// runs on the calling thread alone, so that a process may build a ruler and then fork.
 class Ruler {
   public:
     /// Errors: kArgument if the mesh has no triangle, an index out of range or a corner that is not finite.
@@ -71,8 +77,10 @@ class Ruler {
     RulerOptions options_;
     TriangleTree tree_;
     double diagonal_ = 0;
-    std::vector<std::uint32_t> by_position_;  ///< Vertices sorted by position: tells the reference's own triangles.
-    std::vector<Triangle> sorted_triangles_;  ///< In vertices that are the first at their position, least corner first.
+    std::vector<std::uint32_t>
+        by_position_;  ///< Vertices sorted by position: tells the reference's own triangles.
+    std::vector<Triangle>
+        sorted_triangles_;  ///< In vertices that are the first at their position, least corner first.
 };
 
 }  // namespace vsplit::ruler

@@ -13,8 +13,8 @@
 namespace vsplit::ruler {
 namespace {
 
-constexpr double kFoldCosine = -0.95;   ///< Bent back by more than about 162 degrees.
-constexpr double kFlipCosine = -0.1;    ///< Against the closest triangle of the reference.
+constexpr double kFoldCosine = -0.95;  ///< Bent back by more than about 162 degrees.
+constexpr double kFlipCosine = -0.1;   ///< Against the closest triangle of the reference.
 constexpr double kLeastQuality = 1e-6, kLeastArea = 1e-14;
 
 struct EdgeUse {
@@ -55,7 +55,8 @@ Shape Ruler::shape_of(const Mesh& mesh) const {
             const std::uint32_t a = t[k], b = t[(k + 1) % 3];
             used[a] = 1;
             components.join(a, b);
-            if (a != b) edges.push_back({std::uint64_t(std::min(a, b)) << 32 | std::max(a, b), std::uint32_t(i)});
+            if (a != b)
+                edges.push_back({std::uint64_t(std::min(a, b)) << 32 | std::max(a, b), std::uint32_t(i)});
             const Vec3 side = to_vec(mesh.positions[b]) - to_vec(mesh.positions[a]);
             squared_edges += dot(side, side);
         }
@@ -64,7 +65,8 @@ Shape Ruler::shape_of(const Mesh& mesh) const {
         const double quality = squared_edges > 0 ? 4 * std::numbers::sqrt3 * area / squared_edges : 0;
         shape.quality_min = std::min(shape.quality_min, quality);
         shape.quality_mean += quality / double(count);
-        if (t[0] == t[1] || t[1] == t[2] || t[0] == t[2] || quality < kLeastQuality || area < kLeastArea * diagonal_ * diagonal_) {
+        if (t[0] == t[1] || t[1] == t[2] || t[0] == t[2] || quality < kLeastQuality ||
+            area < kLeastArea * diagonal_ * diagonal_) {
             ++shape.degenerate;
             shape.new_degenerate += !in_reference(mesh, t);
         } else {
@@ -80,7 +82,8 @@ Shape Ruler::shape_of(const Mesh& mesh) const {
         const std::uint32_t a = edges[i].triangle, b = edges[next - 1].triangle;
         if (next - i == 2 && dot(normals[a], normals[b]) < kFoldCosine) {
             ++shape.folded;
-            shape.new_folded += !in_reference(mesh, mesh.triangles[a]) || !in_reference(mesh, mesh.triangles[b]);
+            shape.new_folded +=
+                !in_reference(mesh, mesh.triangles[a]) || !in_reference(mesh, mesh.triangles[b]);
         }
     }
     for (std::uint32_t v = 0; v < used.size(); ++v) {
@@ -92,11 +95,14 @@ Shape Ruler::shape_of(const Mesh& mesh) const {
     tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
         if (dot(normals[i], normals[i]) == 0) return;
         const Triangle& t = mesh.triangles[i];
-        static constexpr double kInside[4][3] = {{1. / 3, 1. / 3, 1. / 3}, {.6, .2, .2}, {.2, .6, .2}, {.2, .2, .6}};
+        static constexpr double kInside[4][3] = {
+            {1. / 3, 1. / 3, 1. / 3}, {.6, .2, .2}, {.2, .6, .2}, {.2, .2, .6}};
         std::uint32_t guess = TriangleTree::kNoGuess;
         for (const auto& w : kInside) {
-            const TriangleTree::Hit hit = tree_.closest(
-                to_vec(mesh.positions[t[0]]) * w[0] + to_vec(mesh.positions[t[1]]) * w[1] + to_vec(mesh.positions[t[2]]) * w[2], guess);
+            const TriangleTree::Hit hit =
+                tree_.closest(to_vec(mesh.positions[t[0]]) * w[0] + to_vec(mesh.positions[t[1]]) * w[1] +
+                                  to_vec(mesh.positions[t[2]]) * w[2],
+                              guess);
             guess = hit.slot;
             const Vec3 there = area_vector(reference_, reference_.triangles[hit.triangle]);
             const double size = length(there);

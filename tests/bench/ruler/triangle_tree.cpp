@@ -11,11 +11,13 @@ namespace {
 
 constexpr std::uint32_t kLeafTriangles = 4;
 constexpr int kBins = 16;
-/// Below this the heuristic may split unevenly; deeper, halves only. With 32-bit counts no path is longer than 48 + 32.
+/// Below this the heuristic may split unevenly; deeper, halves only. With 32-bit counts no path is longer
+/// than 48 + 32.
 constexpr std::uint32_t kUnevenDepth = 48;
 constexpr int kStack = 96;
 
-/// Squared distance to a triangle by the Voronoi region that the point falls in (Ericson, Real-Time Collision Detection, 2005, 5.1.5).
+/// Squared distance to a triangle by the Voronoi region that the point falls in (Ericson, Real-Time Collision
+/// Detection, 2005, 5.1.5).
 double triangle_distance2(Vec3 p, Vec3 a, Vec3 b, Vec3 c) {
     const Vec3 ab = b - a, ac = c - a, ap = p - a;
     const double d1 = dot(ab, ap), d2 = dot(ac, ap);
@@ -32,7 +34,8 @@ double triangle_distance2(Vec3 p, Vec3 a, Vec3 b, Vec3 c) {
     };
     if (d1 * d4 - d3 * d2 <= 0 && d1 >= 0 && d3 <= 0) return to_edge(ap, ab, d1, d1 - d3);
     if (d5 * d2 - d1 * d6 <= 0 && d2 >= 0 && d6 <= 0) return to_edge(ap, ac, d2, d2 - d6);
-    if (d3 * d6 - d5 * d4 <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) return to_edge(bp, c - b, d4 - d3, (d4 - d3) + (d5 - d6));
+    if (d3 * d6 - d5 * d4 <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0)
+        return to_edge(bp, c - b, d4 - d3, (d4 - d3) + (d5 - d6));
     const Vec3 n = cross(ab, ac);
     const double nn = dot(n, n);
     if (!(nn > 0)) return std::min({dot(ap, ap), dot(bp, bp), dot(cp, cp)});
@@ -84,10 +87,12 @@ TriangleTree::TriangleTree(const Mesh& mesh) {
         if (node.count <= kLeafTriangles) continue;
         int axis = 0;
         for (int k = 1; k < 3; ++k)
-            if (high[std::size_t(k)] - low[std::size_t(k)] > high[std::size_t(axis)] - low[std::size_t(axis)]) axis = k;
+            if (high[std::size_t(k)] - low[std::size_t(k)] > high[std::size_t(axis)] - low[std::size_t(axis)])
+                axis = k;
         const float extent = high[std::size_t(axis)] - low[std::size_t(axis)];
         std::uint32_t middle = node.first + node.count / 2;
-        if (extent > 0 && extent <= kFar && range.depth < kUnevenDepth) middle = split(node, boxes, axis, low[std::size_t(axis)], extent);
+        if (extent > 0 && extent <= kFar && range.depth < kUnevenDepth)
+            middle = split(node, boxes, axis, low[std::size_t(axis)], extent);
         const auto child = std::uint32_t(nodes_.size());
         nodes_.push_back({{}, {}, node.first, middle - node.first});
         nodes_.push_back({{}, {}, middle, node.first + node.count - middle});
@@ -102,7 +107,8 @@ TriangleTree::TriangleTree(const Mesh& mesh) {
 }
 
 /// Sets the node's box; returns the bounds of the centres.
-void TriangleTree::fit(Node& node, const std::vector<Box>& boxes, std::array<float, 3>& low, std::array<float, 3>& high) const {
+void TriangleTree::fit(Node& node, const std::vector<Box>& boxes, std::array<float, 3>& low,
+                       std::array<float, 3>& high) const {
     Bounds all, centres;
     for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
         const Box& box = boxes[order_[i]];
@@ -116,7 +122,8 @@ void TriangleTree::fit(Node& node, const std::vector<Box>& boxes, std::array<flo
 }
 
 /// Partitions the node's part of order_ where the heuristic is least; returns the second child's first.
-std::uint32_t TriangleTree::split(const Node& node, const std::vector<Box>& boxes, int axis, float low, float extent) {
+std::uint32_t TriangleTree::split(const Node& node, const std::vector<Box>& boxes, int axis, float low,
+                                  float extent) {
     struct Bin {
         Bounds bounds;
         std::uint32_t count = 0;
@@ -154,7 +161,8 @@ std::uint32_t TriangleTree::split(const Node& node, const std::vector<Box>& boxe
     const std::uint32_t halves = node.first + node.count / 2;
     if (best_bin < 0) return halves;
     const auto begin = order_.begin() + node.first;
-    const auto middle = std::partition(begin, begin + node.count, [&](std::uint32_t t) { return bin_of(t) < best_bin; });
+    const auto middle =
+        std::partition(begin, begin + node.count, [&](std::uint32_t t) { return bin_of(t) < best_bin; });
     const auto at = std::uint32_t(middle - order_.begin());
     return at == node.first || at == node.first + node.count ? halves : at;
 }

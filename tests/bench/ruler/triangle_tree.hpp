@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The vsplit authors
 // SPDX-License-Identifier: MIT
 //
-// Exact closest point of a triangle mesh: a binary box tree split by the surface area heuristic in bins (Wald 2007).
+// Exact closest point of a triangle mesh: a binary box tree split by the surface area heuristic in bins (Wald
+// 2007).
 #pragma once
 
 #include <array>
@@ -26,8 +27,8 @@ class TriangleTree {
     /// `mesh` has a triangle, its corners exist and are finite. Runs on the calling thread alone.
     explicit TriangleTree(const Mesh& mesh);
 
-    /// The closest triangle; of several at the same distance any, but always the same for the same guess. A guess (Hit::slot of a
-    /// point nearby) only makes it faster.
+    /// The closest triangle; of several at the same distance any, but always the same for the same guess. A
+    /// guess (Hit::slot of a point nearby) only makes it faster.
     Hit closest(Vec3 point, std::uint32_t guess = kNoGuess) const;
 
   private:
@@ -42,13 +43,14 @@ class TriangleTree {
         std::uint32_t node, depth;
     };
 
-    void fit(Node& node, const std::vector<Box>& boxes, std::array<float, 3>& low, std::array<float, 3>& high) const;
+    void fit(Node& node, const std::vector<Box>& boxes, std::array<float, 3>& low,
+             std::array<float, 3>& high) const;
     std::uint32_t split(const Node& node, const std::vector<Box>& boxes, int axis, float low, float extent);
     double box_distance2(const Node& node, Vec3 p) const;
     double distance2(std::uint32_t slot, Vec3 p) const;
 
     std::vector<Node> nodes_;
-    std::vector<std::uint32_t> order_;               ///< Leaf order -> mesh order.
+    std::vector<std::uint32_t> order_;              ///< Leaf order -> mesh order.
     std::vector<std::array<Float3, 3>> triangles_;  ///< In leaf order.
 };
 

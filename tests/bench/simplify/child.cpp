@@ -33,7 +33,9 @@ std::uint64_t resident_bytes() {
     return resident * std::uint64_t(sysconf(_SC_PAGESIZE));
 }
 
-Error failure(std::string message) { return {ErrorCode::kUnsupported, std::move(message), Error::kNowhere, 0}; }
+Error failure(std::string message) {
+    return {ErrorCode::kUnsupported, std::move(message), Error::kNowhere, 0};
+}
 
 /// In the child: the answer, or why there is none, as CBOR.
 std::vector<std::uint8_t> answer(const std::function<Result<Json>()>& work) {
@@ -86,7 +88,9 @@ Result<Json> in_child(const std::function<Result<Json>()>& work, double limit_se
     std::vector<std::uint8_t> bytes;
     bool late = false;
     for (;;) {
-        const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(until - std::chrono::steady_clock::now()).count();
+        const auto left =
+            std::chrono::duration_cast<std::chrono::milliseconds>(until - std::chrono::steady_clock::now())
+                .count();
         pollfd ready{ends[0], POLLIN, 0};
         const int n = left > 0 ? poll(&ready, 1, int(left)) : 0;
         if (n < 0 && errno == EINTR) continue;
@@ -108,7 +112,8 @@ Result<Json> in_child(const std::function<Result<Json>()>& work, double limit_se
     if (late) return failure("stopped after " + std::to_string(int(limit_seconds)) + " s");
     if (WIFSIGNALED(status)) return failure("crashed (signal " + std::to_string(WTERMSIG(status)) + ")");
     Json json = Json::from_cbor(bytes, true, false);
-    if (!json.is_object()) return failure("ended without an answer (exit " + std::to_string(WEXITSTATUS(status)) + ")");
+    if (!json.is_object())
+        return failure("ended without an answer (exit " + std::to_string(WEXITSTATUS(status)) + ")");
     if (json.contains("error")) return failure(json["error"].get<std::string>());
     return std::move(json["answer"]);
 }

@@ -18,7 +18,8 @@ std::string value_in(const char* path, const std::string& key, char separator) {
         if (line.rfind(key, 0) != 0) continue;
         const std::size_t at = line.find(separator);
         if (at == std::string::npos) continue;
-        const std::size_t begin = line.find_first_not_of(" \t\"", at + 1), end = line.find_last_not_of(" \t\"");
+        const std::size_t begin = line.find_first_not_of(" \t\"", at + 1),
+                          end = line.find_last_not_of(" \t\"");
         return begin == std::string::npos ? "" : line.substr(begin, end - begin + 1);
     }
     return "unknown";
@@ -56,7 +57,8 @@ Machine describe_machine() {
     machine.commit = output_of(git + "rev-parse --short=10 HEAD 2>/dev/null");
     if (machine.commit.empty()) machine.commit = "unknown";
     // The document that this run rewrites does not count.
-    if (!output_of(git + "status --porcelain --untracked-files=no -- . ':!docs/benchmarks.md' 2>/dev/null").empty())
+    if (!output_of(git + "status --porcelain --untracked-files=no -- . ':!docs/benchmarks.md' 2>/dev/null")
+             .empty())
         machine.commit += " with changes";
     machine.cores = std::thread::hardware_concurrency();
     machine.memory_gib = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGESIZE)) / (1 << 30);

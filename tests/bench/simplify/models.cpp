@@ -49,7 +49,8 @@ ModelSet choose_models(const std::vector<std::string>& files, const std::string&
         return set;
     }
     const auto whole = [&](const char* name) { return folder + "/meshes/" + name; };
-    std::vector<const char*> names{"stanford-bunny.obj", "armadillo.obj", "nefertiti.obj", "igea.ply", "fandisk.obj", "rocker-arm.obj"};
+    std::vector<const char*> names{"stanford-bunny.obj", "armadillo.obj", "nefertiti.obj",
+                                   "igea.ply",           "fandisk.obj",   "rocker-arm.obj"};
     if (quick) names = {"stanford-bunny.obj", "fandisk.obj", "rocker-arm.obj"};
     const char* speed = quick ? "igea.ply" : "igea-1m.ply";
     std::error_code ignored;
@@ -63,7 +64,9 @@ ModelSet choose_models(const std::vector<std::string>& files, const std::string&
     set.quality = {from_sample("whale", bake::Sample::kWhale, quick ? 20'000 : 100'000),
                    from_sample("ocean", bake::Sample::kOcean, quick ? 20'000 : 100'000)};
     set.speed = from_sample("whale", bake::Sample::kWhale, quick ? 250'000 : 1'000'000);
-    set.said = "the built-in samples, because the shared corpus is not there: these figures do not answer for real models";
+    set.said =
+        "the built-in samples, because the shared corpus is not there: these figures do not answer for real "
+        "models";
     return set;
 }
 
@@ -85,7 +88,9 @@ Mesh subdivide(const Mesh& mesh, float amplitude) {
             sides.push_back({std::uint64_t(std::min(a, b)) << 32 | std::max(a, b), std::uint32_t(3 * i + k)});
         }
     }
-    std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) { return std::pair(a.edge, a.corner) < std::pair(b.edge, b.corner); });
+    std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
+        return std::pair(a.edge, a.corner) < std::pair(b.edge, b.corner);
+    });
 
     Mesh fine;
     fine.positions = mesh.positions;
@@ -93,7 +98,8 @@ Mesh subdivide(const Mesh& mesh, float amplitude) {
     for (std::size_t i = 0; i < sides.size(); ++i) {
         if (i == 0 || sides[i].edge != sides[i - 1].edge) {
             const auto a = std::uint32_t(sides[i].edge >> 32), b = std::uint32_t(sides[i].edge);
-            const ruler::Vec3 pa = to_vec(mesh.positions[a]), pb = to_vec(mesh.positions[b]), normal = normals[a] + normals[b];
+            const ruler::Vec3 pa = to_vec(mesh.positions[a]), pb = to_vec(mesh.positions[b]),
+                              normal = normals[a] + normals[b];
             const double size = length(normal);
             const double shift = size > 0 ? amplitude * noise(sides[i].edge) * length(pb - pa) / size : 0;
             const ruler::Vec3 p = (pa + pb) * 0.5 + normal * shift;
@@ -104,8 +110,10 @@ Mesh subdivide(const Mesh& mesh, float amplitude) {
     fine.triangles.reserve(4 * mesh.triangles.size());
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
         const Triangle& t = mesh.triangles[i];
-        const std::uint32_t *m = &middle[3 * i];
-        fine.triangles.insert(fine.triangles.end(), {{t[0], m[0], m[2]}, {t[1], m[1], m[0]}, {t[2], m[2], m[1]}, {m[0], m[1], m[2]}});
+        const std::uint32_t* m = &middle[3 * i];
+        fine.triangles.insert(
+            fine.triangles.end(),
+            {{t[0], m[0], m[2]}, {t[1], m[1], m[0]}, {t[2], m[2], m[1]}, {m[0], m[1], m[2]}});
     }
     return fine;
 }

@@ -26,13 +26,15 @@ struct ModelSet {
     std::string said;            ///< Where they are from, for people.
 };
 
-/// `files` if there are any (the last is the speed's as well), else the corpus in `folder`, else the built-in samples.
+/// `files` if there are any (the last is the speed's as well), else the corpus in `folder`, else the built-in
+/// samples.
 ModelSet choose_models(const std::vector<std::string>& files, const std::string& folder, bool quick);
 
 Result<Mesh> load_mesh(const std::string& path);
 
-/// Every triangle cut in four at the middles of its edges, each middle moved along the normal by a pseudo-random part, up to
-/// `amplitude`, of its edge's length: a model four times as large that is not flat at its finest scale. Same bytes everywhere.
+/// Every triangle cut in four at the middles of its edges, each middle moved along the normal by a
+/// pseudo-random part, up to `amplitude`, of its edge's length: a model four times as large that is not flat
+/// at its finest scale. Same bytes everywhere.
 Mesh subdivide(const Mesh& mesh, float amplitude);
 
 }  // namespace vsplit::bench

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The vsplit authors
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// CGAL's edge_collapse with any policy, snapshots taken on the way down: the same sequence as a run for each target.
+// CGAL's edge_collapse with any policy, snapshots taken on the way down: the same sequence as a run for each
+// target.
 #pragma once
 
 #include <CGAL/Simple_cartesian.h>
@@ -21,11 +22,13 @@ using CgalMesh = CGAL::Surface_mesh<CgalKernel::Point_3>;
 /// Nothing if CGAL refuses a face (it would be non-manifold).
 inline std::optional<CgalMesh> to_cgal(const Mesh& mesh) {
     CgalMesh out;
-    out.reserve(CgalMesh::size_type(mesh.positions.size()), CgalMesh::size_type(mesh.positions.size() + mesh.triangles.size()),
+    out.reserve(CgalMesh::size_type(mesh.positions.size()),
+                CgalMesh::size_type(mesh.positions.size() + mesh.triangles.size()),
                 CgalMesh::size_type(mesh.triangles.size()));
     for (const Float3& p : mesh.positions) out.add_vertex({p.x, p.y, p.z});
     for (const Triangle& t : mesh.triangles)
-        if (out.add_face(CgalMesh::Vertex_index(t[0]), CgalMesh::Vertex_index(t[1]), CgalMesh::Vertex_index(t[2])) == CgalMesh::null_face())
+        if (out.add_face(CgalMesh::Vertex_index(t[0]), CgalMesh::Vertex_index(t[1]),
+                         CgalMesh::Vertex_index(t[2])) == CgalMesh::null_face())
             return std::nullopt;
     return out;
 }
@@ -52,7 +55,8 @@ struct CgalSnapshots {
     std::vector<Mesh> levels;
 
     bool take(const CgalMesh& mesh) {
-        while (levels.size() < targets.size() && mesh.number_of_faces() <= targets[levels.size()]) levels.push_back(from_cgal(mesh));
+        while (levels.size() < targets.size() && mesh.number_of_faces() <= targets[levels.size()])
+            levels.push_back(from_cgal(mesh));
         return levels.size() == targets.size();
     }
 };
@@ -69,13 +73,17 @@ struct CgalStop {
 
 /// `collapse(mesh, stop)` runs edge_collapse with its policies.
 template <class Collapse>
-Result<std::vector<Mesh>> cgal_simplify(const Mesh& mesh, std::span<const std::size_t> targets, const Collapse& collapse) {
+Result<std::vector<Mesh>> cgal_simplify(const Mesh& mesh, std::span<const std::size_t> targets,
+                                        const Collapse& collapse) {
     auto work = to_cgal(mesh);
-    if (!work) return Error{ErrorCode::kUnsupported, "CGAL refuses a face: the input is not manifold", Error::kNowhere, 0};
+    if (!work)
+        return Error{ErrorCode::kUnsupported, "CGAL refuses a face: the input is not manifold",
+                     Error::kNowhere, 0};
     CgalSnapshots snapshots{targets, {}};
     collapse(*work, CgalStop{&snapshots});
     snapshots.take(*work);
-    while (snapshots.levels.size() < targets.size()) snapshots.levels.push_back(from_cgal(*work));  // It stopped short.
+    while (snapshots.levels.size() < targets.size())
+        snapshots.levels.push_back(from_cgal(*work));  // It stopped short.
     return std::move(snapshots.levels);
 }
 

@@ -17,7 +17,8 @@ Result<std::vector<Mesh>> simplify(const Mesh& mesh, std::span<const std::size_t
         using Policies = Sms::GarlandHeckbert_plane_policies<CgalMesh, CgalKernel>;
         Policies policies(work);
         Sms::Bounded_normal_change_placement<Policies::Get_placement> placement(policies.get_placement());
-        Sms::edge_collapse(work, stop, CGAL::parameters::get_cost(policies.get_cost()).get_placement(placement));
+        Sms::edge_collapse(work, stop,
+                           CGAL::parameters::get_cost(policies.get_cost()).get_placement(placement));
     });
 }
 
@@ -25,7 +26,9 @@ Result<std::vector<Mesh>> simplify(const Mesh& mesh, std::span<const std::size_t
 
 Peer cgal_garland_heckbert() {
     return {"CGAL GH", "CGAL " CGAL_VERSION_STR,
-            "Garland-Heckbert plane policies, bounded normal change as in CGAL's example; snapshots on one way down", "", simplify};
+            "Garland-Heckbert plane policies, bounded normal change as in CGAL's example; snapshots on one "
+            "way down",
+            "", simplify};
 }
 
 }  // namespace vsplit::bench

@@ -21,7 +21,8 @@ Result<std::vector<Mesh>> simplify(const Mesh& mesh, std::span<const std::size_t
 }  // namespace
 
 Peer cgal_lindstrom_turk() {
-    return {"CGAL LT", "CGAL " CGAL_VERSION_STR, "Lindstrom-Turk cost and placement, defaults (memoryless); snapshots on one way down", "",
+    return {"CGAL LT", "CGAL " CGAL_VERSION_STR,
+            "Lindstrom-Turk cost and placement, defaults (memoryless); snapshots on one way down", "",
             simplify};
 }
 

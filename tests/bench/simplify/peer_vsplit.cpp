@@ -25,6 +25,8 @@ Result<std::vector<Mesh>> simplify(const Mesh& mesh, std::span<const std::size_t
 
 }  // namespace
 
-Peer vsplit_engine() { return {"vsplit", "this commit", "defaults; one record, cut at each ratio", "", simplify}; }
+Peer vsplit_engine() {
+    return {"vsplit", "this commit", "defaults; one record, cut at each ratio", "", simplify};
+}
 
 }  // namespace vsplit::bench

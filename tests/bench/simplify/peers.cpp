@@ -5,7 +5,8 @@
 namespace vsplit::bench {
 namespace {
 
-#if !defined(VSPLIT_BENCH_CGAL) || !defined(VSPLIT_BENCH_OPENMESH) || !defined(VSPLIT_BENCH_VTK) || !defined(VSPLIT_BENCH_MESHOPTIMIZER)
+#if !defined(VSPLIT_BENCH_CGAL) || !defined(VSPLIT_BENCH_OPENMESH) || !defined(VSPLIT_BENCH_VTK) || \
+    !defined(VSPLIT_BENCH_MESHOPTIMIZER)
 Peer missing(const char* name, const char* package) {
     return {name, "", "", std::string("not found when this was configured: ") + package, {}};
 }
@@ -23,8 +24,7 @@ std::vector<Peer> all_peers() {
     peers.push_back(missing("CGAL GH", "libcgal-dev, libeigen3-dev (or VSPLIT_WITH_CGAL is off)"));
 #endif
 #ifdef VSPLIT_BENCH_VTK
-    peers.push_back(vtk_quadric(false));
-    peers.push_back(vtk_quadric(true));
+    peers.push_back(vtk_quadric());
 #else
     peers.push_back(missing("VTK", "libvtk9-dev"));
 #endif

@@ -29,13 +29,14 @@ struct Level {
 
     std::uint64_t defects() const { return new_flipped + new_folded + new_degenerate; }
 };
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Level, ratio, target, triangles, reason, mean, rms, max, normal_degrees, quality_mean, quality_min,
-                                   new_flipped, new_folded, new_degenerate, non_manifold_edges, boundary_edges, components)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Level, ratio, target, triangles, reason, mean, rms, max, normal_degrees,
+                                   quality_mean, quality_min, new_flipped, new_folded, new_degenerate,
+                                   non_manifold_edges, boundary_edges, components)
 
 /// One simplifier on one model.
 struct Run {
     std::string peer;
-    std::string reason;  ///< Why there are no levels; empty if there are.
+    std::string reason;      ///< Why there are no levels; empty if there are.
     double cpu_seconds = 0;  ///< For all ratios, one thread; median of three where short.
     std::vector<Level> levels;
 };
@@ -50,7 +51,8 @@ struct ModelQuality {
 };
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ModelQuality, model, reason, vertices, triangles, degenerate, folded, runs)
 
-ModelQuality measure_quality(const Model& model, const std::vector<Peer>& peers, const ruler::RulerOptions& options, bool quick);
+ModelQuality measure_quality(const Model& model, const std::vector<Peer>& peers,
+                             const ruler::RulerOptions& options, bool quick);
 
 /// How `--error E` holds: E asked for, the level chosen, the distance that it really has.
 struct ErrorCheck {
@@ -65,7 +67,8 @@ struct Calibration {
 };
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Calibration, model, reason, checks)
 
-/// Twenty errors, evenly in their logarithm from the one that drops a twentieth of the triangles to the one that leaves a hundredth.
+/// Twenty errors, evenly in their logarithm from the one that drops a twentieth of the triangles to the one
+/// that leaves a hundredth.
 Calibration measure_calibration(const Model& model, const ruler::RulerOptions& options);
 
 }  // namespace vsplit::bench

@@ -16,11 +16,11 @@ namespace vsplit::bench {
 
 struct Report {
     Machine machine;
-    std::string command;    ///< That repeats it; names no folder.
-    std::string models;     ///< Where they are from.
+    std::string command;  ///< That repeats it; names no folder.
+    std::string models;   ///< Where they are from.
     std::size_t samples = 0;
     std::vector<Peer> peers;
-    std::vector<ModelQuality> quality;     ///< Empty if not asked for.
+    std::vector<ModelQuality> quality;  ///< Empty if not asked for.
     std::optional<Speed> speed;
     std::vector<Calibration> calibration;  ///< Empty if not asked for.
 };

@@ -14,7 +14,7 @@
 namespace vsplit::bench {
 namespace {
 
-constexpr double kLimitSeconds = 300;
+constexpr double kLimitSeconds = 600;
 
 struct Sample {
     Usage usage;
@@ -90,15 +90,18 @@ class Lane {
         const auto wall = sorted([](const Sample& s) { return s.usage.wall_seconds; });
         const auto peak = sorted([](const Sample& s) { return s.usage.peak_bytes; });
         const auto start = sorted([](const Sample& s) { return s.usage.start_bytes; });
-        const std::size_t middle = samples_.size() / 2;
+        const auto median = [](const std::vector<double>& values) {
+            const std::size_t half = values.size() / 2;
+            return values.size() % 2 ? values[half] : 0.5 * (values[half - 1] + values[half]);
+        };
         timing_.runs = int(samples_.size());
-        timing_.cpu_seconds = cpu[middle];
+        timing_.cpu_seconds = median(cpu);
         timing_.cpu_least = cpu.front();
         timing_.cpu_most = cpu.back();
-        timing_.wall_seconds = wall[middle];
+        timing_.wall_seconds = median(wall);
         timing_.wall_least = wall.front();
-        timing_.peak_bytes = peak[middle];
-        timing_.start_bytes = start[middle];
+        timing_.peak_bytes = median(peak);
+        timing_.start_bytes = median(start);
         timing_.collapses = samples_.front().collapses;
         timing_.triangles = samples_.front().triangles;
         timing_.fingerprint = samples_.front().fingerprint;
@@ -156,8 +159,8 @@ Speed measure_speed(const Model& model, const std::vector<Peer>& peers, bool qui
     };
     const int rounds = quick ? 3 : 5;
     {
-        Lane one(speed.record), two(speed.record_two_threads), calibrated(speed.record_calibrated), fast(speed.meshoptimizer),
-            half_edges(speed.openmesh);
+        Lane one(speed.record), two(speed.record_two_threads), calibrated(speed.record_calibrated),
+            fast(speed.meshoptimizer), half_edges(speed.openmesh);
         for (int round = 0; round < rounds; ++round) {
             std::fprintf(stderr, "%s: speed, round %d of %d\n", model.name.c_str(), round + 1, rounds);
             one.run([&] { return record(*mesh, 1, false); });

@@ -23,8 +23,8 @@ struct Timing {
     double triangles = 0;     ///< Of the result.
     std::string fingerprint;  ///< Of the record, where there is one; the same for all runs, or "differs".
 };
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Timing, reason, runs, cpu_seconds, cpu_least, cpu_most, wall_seconds, wall_least, peak_bytes,
-                                   start_bytes, collapses, triangles, fingerprint)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Timing, reason, runs, cpu_seconds, cpu_least, cpu_most, wall_seconds,
+                                   wall_least, peak_bytes, start_bytes, collapses, triangles, fingerprint)
 
 struct Speed {
     std::string model, reason;
@@ -33,8 +33,9 @@ struct Speed {
     Timing meshoptimizer, openmesh;                        ///< To 1 %.
     Timing record_again, record_fine;                      ///< The model and its subdivision, in turns.
 };
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Speed, model, reason, triangles, fine_triangles, record, record_two_threads, record_calibrated,
-                                   meshoptimizer, openmesh, record_again, record_fine)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Speed, model, reason, triangles, fine_triangles, record,
+                                   record_two_threads, record_calibrated, meshoptimizer, openmesh,
+                                   record_again, record_fine)
 
 Speed measure_speed(const Model& model, const std::vector<Peer>& peers, bool quick);
 
