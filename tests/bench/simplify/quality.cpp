@@ -19,7 +19,7 @@ constexpr double kShortSeconds = 2;
 
 /// A level counts at its ratio if it has no more than this above the target, or this below.
 bool near_target(std::uint64_t triangles, std::uint64_t target) {
-    const auto slack = std::max<std::uint64_t>(4, target / 50);
+    const auto slack = std::max<std::uint64_t>(1, target / 50);
     return triangles <= target + slack && triangles + slack >= target;
 }
 
@@ -83,6 +83,10 @@ ModelQuality measure_quality(const Model& model, const std::vector<Peer>& peers,
     auto ruler = ruler::Ruler::over(*mesh, options);
     if (!ruler) {
         quality.reason = ruler.error().describe();
+        return quality;
+    }
+    if (!(ruler->diagonal() > 0)) {
+        quality.reason = "the model has no extent";
         return quality;
     }
     quality.vertices = mesh->positions.size();

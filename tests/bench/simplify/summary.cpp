@@ -51,7 +51,7 @@ void add_quality(std::vector<SummaryRow>& rows, const std::vector<ModelQuality>&
                                    ? "n/a: no peer"
                                    : fmt::format("{:.3f} ({}, {} levels", best.ratio, best.peer, best.levels);
         if (!best.peer.empty())
-            measured += std::abs(best.unfloored - best.ratio) < 5e-4
+            measured += !(std::abs(best.unfloored - best.ratio) >= 5e-4)
                             ? ")"
                             : fmt::format("; {:.3f} unfloored)", best.unfloored);
         rows.push_back(row_of(figure, best.ratio, measured, limits));
