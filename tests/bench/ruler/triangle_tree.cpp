@@ -1,0 +1,216 @@
+// SPDX-FileCopyrightText: 2026 The vsplit authors
+// SPDX-License-Identifier: MIT
+#include "triangle_tree.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+namespace vsplit::ruler {
+namespace {
+
+constexpr std::uint32_t kLeafTriangles = 4;
+constexpr int kBins = 16;
+/// Below this the heuristic may split unevenly; deeper, halves only. With 32-bit counts no path is longer
+/// than 48 + 32.
+constexpr std::uint32_t kUnevenDepth = 48;
+constexpr int kStack = 96;
+
+/// Squared distance to a triangle by the Voronoi region that the point falls in (Ericson, Real-Time Collision
+/// Detection, 2005, 5.1.5).
+double triangle_distance2(Vec3 p, Vec3 a, Vec3 b, Vec3 c) {
+    const Vec3 ab = b - a, ac = c - a, ap = p - a;
+    const double d1 = dot(ab, ap), d2 = dot(ac, ap);
+    if (d1 <= 0 && d2 <= 0) return dot(ap, ap);
+    const Vec3 bp = p - b;
+    const double d3 = dot(ab, bp), d4 = dot(ac, bp);
+    if (d3 >= 0 && d4 <= d3) return dot(bp, bp);
+    const Vec3 cp = p - c;
+    const double d5 = dot(ab, cp), d6 = dot(ac, cp);
+    if (d6 >= 0 && d5 <= d6) return dot(cp, cp);
+    const auto to_edge = [](Vec3 from, Vec3 along, double part, double whole) {
+        const Vec3 rest = from - along * (whole > 0 ? part / whole : 0.0);
+        return dot(rest, rest);
+    };
+    if (d1 * d4 - d3 * d2 <= 0 && d1 >= 0 && d3 <= 0) return to_edge(ap, ab, d1, d1 - d3);
+    if (d5 * d2 - d1 * d6 <= 0 && d2 >= 0 && d6 <= 0) return to_edge(ap, ac, d2, d2 - d6);
+    if (d3 * d6 - d5 * d4 <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0)
+        return to_edge(bp, c - b, d4 - d3, (d4 - d3) + (d5 - d6));
+    const Vec3 n = cross(ab, ac);
+    const double nn = dot(n, n);
+    if (!(nn > 0)) return std::min({dot(ap, ap), dot(bp, bp), dot(cp, cp)});
+    const double height = dot(n, ap);
+    return height * height / nn;
+}
+
+constexpr float kFar = std::numeric_limits<float>::max();
+
+struct Bounds {
+    std::array<float, 3> low{kFar, kFar, kFar}, high{-kFar, -kFar, -kFar};
+    void add(const std::array<float, 3>& l, const std::array<float, 3>& h) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            low[k] = std::min(low[k], l[k]);
+            high[k] = std::max(high[k], h[k]);
+        }
+    }
+    double half_area() const {
+        const double a = double(high[0]) - low[0], b = double(high[1]) - low[1], c = double(high[2]) - low[2];
+        return a * b + b * c + c * a;
+    }
+};
+
+}  // namespace
+
+TriangleTree::TriangleTree(const Mesh& mesh) {
+    const std::size_t count = mesh.triangles.size();
+    std::vector<Box> boxes(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        Bounds bounds;
+        for (const std::uint32_t v : mesh.triangles[i]) {
+            const Float3& p = mesh.positions[v];
+            bounds.add({p.x, p.y, p.z}, {p.x, p.y, p.z});
+        }
+        boxes[i] = {bounds.low, bounds.high, {}};
+        for (std::size_t k = 0; k < 3; ++k) boxes[i].centre[k] = 0.5f * bounds.low[k] + 0.5f * bounds.high[k];
+    }
+    order_.resize(count);
+    std::iota(order_.begin(), order_.end(), 0u);
+    nodes_.reserve(count + 1);
+    nodes_.push_back({{}, {}, 0, std::uint32_t(count)});
+    std::vector<Range> open{{0, 0}};
+    while (!open.empty()) {
+        const Range range = open.back();
+        open.pop_back();
+        std::array<float, 3> low, high;
+        fit(nodes_[range.node], boxes, low, high);
+        const Node node = nodes_[range.node];
+        if (node.count <= kLeafTriangles) continue;
+        int axis = 0;
+        for (int k = 1; k < 3; ++k)
+            if (high[std::size_t(k)] - low[std::size_t(k)] > high[std::size_t(axis)] - low[std::size_t(axis)])
+                axis = k;
+        const float extent = high[std::size_t(axis)] - low[std::size_t(axis)];
+        std::uint32_t middle = node.first + node.count / 2;
+        if (extent > 0 && extent <= kFar && range.depth < kUnevenDepth)
+            middle = split(node, boxes, axis, low[std::size_t(axis)], extent);
+        const auto child = std::uint32_t(nodes_.size());
+        nodes_.push_back({{}, {}, node.first, middle - node.first});
+        nodes_.push_back({{}, {}, middle, node.first + node.count - middle});
+        nodes_[range.node].first = child;
+        nodes_[range.node].count = 0;
+        open.push_back({child, range.depth + 1});
+        open.push_back({child + 1, range.depth + 1});
+    }
+    triangles_.resize(count);
+    for (std::size_t i = 0; i < count; ++i)
+        for (std::size_t k = 0; k < 3; ++k) triangles_[i][k] = mesh.positions[mesh.triangles[order_[i]][k]];
+}
+
+/// Sets the node's box; returns the bounds of the centres.
+void TriangleTree::fit(Node& node, const std::vector<Box>& boxes, std::array<float, 3>& low,
+                       std::array<float, 3>& high) const {
+    Bounds all, centres;
+    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+        const Box& box = boxes[order_[i]];
+        all.add(box.low, box.high);
+        centres.add(box.centre, box.centre);
+    }
+    node.low = all.low;
+    node.high = all.high;
+    low = centres.low;
+    high = centres.high;
+}
+
+/// Partitions the node's part of order_ where the heuristic is least; returns the second child's first.
+std::uint32_t TriangleTree::split(const Node& node, const std::vector<Box>& boxes, int axis, float low,
+                                  float extent) {
+    struct Bin {
+        Bounds bounds;
+        std::uint32_t count = 0;
+    };
+    std::array<Bin, kBins> bins;
+    const double scale = kBins * 0.9999 / double(extent);
+    const auto bin_of = [&](std::uint32_t t) {
+        return std::min(kBins - 1, int((double(boxes[t].centre[std::size_t(axis)]) - double(low)) * scale));
+    };
+    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+        Bin& bin = bins[std::size_t(bin_of(order_[i]))];
+        bin.bounds.add(boxes[order_[i]].low, boxes[order_[i]].high);
+        ++bin.count;
+    }
+    std::array<double, kBins> right_cost{};
+    Bin sum;
+    for (std::size_t i = kBins - 1; i > 0; --i) {
+        sum.bounds.add(bins[i].bounds.low, bins[i].bounds.high);
+        sum.count += bins[i].count;
+        right_cost[i] = sum.count ? sum.bounds.half_area() * sum.count : 0;
+    }
+    sum = {};
+    double best = std::numeric_limits<double>::infinity();
+    int best_bin = -1;
+    for (std::size_t i = 1; i < kBins; ++i) {
+        sum.bounds.add(bins[i - 1].bounds.low, bins[i - 1].bounds.high);
+        sum.count += bins[i - 1].count;
+        if (sum.count == 0 || sum.count == node.count) continue;
+        const double cost = sum.bounds.half_area() * sum.count + right_cost[i];
+        if (cost < best) {
+            best = cost;
+            best_bin = int(i);
+        }
+    }
+    const std::uint32_t halves = node.first + node.count / 2;
+    if (best_bin < 0) return halves;
+    const auto begin = order_.begin() + node.first;
+    const auto middle =
+        std::partition(begin, begin + node.count, [&](std::uint32_t t) { return bin_of(t) < best_bin; });
+    const auto at = std::uint32_t(middle - order_.begin());
+    return at == node.first || at == node.first + node.count ? halves : at;
+}
+
+double TriangleTree::box_distance2(const Node& node, Vec3 p) const {
+    const std::array<double, 3> at{p.x, p.y, p.z};
+    double sum = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const double outside = std::max({double(node.low[k]) - at[k], at[k] - double(node.high[k]), 0.0});
+        sum += outside * outside;
+    }
+    return sum;
+}
+
+double TriangleTree::distance2(std::uint32_t slot, Vec3 p) const {
+    const auto& t = triangles_[slot];
+    return triangle_distance2(p, to_vec(t[0]), to_vec(t[1]), to_vec(t[2]));
+}
+
+TriangleTree::Hit TriangleTree::closest(Vec3 point, std::uint32_t guess) const {
+    struct Entry {
+        std::uint32_t node;
+        double distance2;
+    };
+    Entry stack[kStack];
+    int size = 0;
+    std::uint32_t slot = guess < triangles_.size() ? guess : 0;
+    double best = distance2(slot, point);
+    stack[size++] = {0, box_distance2(nodes_[0], point)};
+    while (size) {
+        const Entry entry = stack[--size];
+        if (entry.distance2 >= best) continue;
+        const Node& node = nodes_[entry.node];
+        if (node.count) {
+            for (std::uint32_t i = node.first; i < node.first + node.count; ++i)
+                if (const double d = distance2(i, point); d < best) {
+                    best = d;
+                    slot = i;
+                }
+            continue;
+        }
+        Entry near{node.first, box_distance2(nodes_[node.first], point)};
+        Entry far{node.first + 1, box_distance2(nodes_[node.first + 1], point)};
+        if (far.distance2 < near.distance2) std::swap(near, far);
+        if (far.distance2 < best) stack[size++] = far;
+        if (near.distance2 < best) stack[size++] = near;
+    }
+    return {best, order_[slot], slot};
+}
+
+}  // namespace vsplit::ruler

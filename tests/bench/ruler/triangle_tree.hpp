@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: 2026 The vsplit authors
+// SPDX-License-Identifier: MIT
+//
+// Exact closest point of a triangle mesh: a binary box tree split by the surface area heuristic in bins (Wald
+// 2007).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "vec.hpp"
+
+namespace vsplit::ruler {
+
+/// Owns a copy of the triangles' corners; queries are const and may run at once.
+class TriangleTree {
+  public:
+    static constexpr std::uint32_t kNoGuess = 0xFFFFFFFFu;
+
+    struct Hit {
+        double distance2 = 0;
+        std::uint32_t triangle = 0;  ///< As the mesh numbers them.
+        std::uint32_t slot = 0;      ///< A guess for the next query nearby.
+    };
+
+    /// `mesh` has a triangle, its corners exist and are finite. Runs on the calling thread alone.
+    explicit TriangleTree(const Mesh& mesh);
+
+    /// The closest triangle; of several at the same distance any, but always the same for the same guess. A
+    /// guess (Hit::slot of a point nearby) only makes it faster.
+    Hit closest(Vec3 point, std::uint32_t guess = kNoGuess) const;
+
+  private:
+    struct Node {
+        std::array<float, 3> low, high;
+        std::uint32_t first = 0, count = 0;  ///< count 0: an inner node, children at first and first + 1.
+    };
+    struct Box {
+        std::array<float, 3> low, high, centre;
+    };
+    struct Range {
+        std::uint32_t node, depth;
+    };
+
+    void fit(Node& node, const std::vector<Box>& boxes, std::array<float, 3>& low,
+             std::array<float, 3>& high) const;
+    std::uint32_t split(const Node& node, const std::vector<Box>& boxes, int axis, float low, float extent);
+    double box_distance2(const Node& node, Vec3 p) const;
+    double distance2(std::uint32_t slot, Vec3 p) const;
+
+    std::vector<Node> nodes_;
+    std::vector<std::uint32_t> order_;              ///< Leaf order -> mesh order.
+    std::vector<std::array<Float3, 3>> triangles_;  ///< In leaf order.
+};
+
+}  // namespace vsplit::ruler
