@@ -12,6 +12,7 @@
 #include "command.hpp"
 #include "input.hpp"
 #include "vsplit/bake/collapse.hpp"
+#include "vsplit/bake/files.hpp"
 #include "vsplit/write.hpp"
 
 namespace vsplit::app {

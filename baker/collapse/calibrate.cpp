@@ -29,6 +29,8 @@ constexpr double kShareOfCoarser = 0.8;
 constexpr std::size_t kDensePass = 50000;
 /// A tree over a level is built where the level is small; above, the stars around a vertex's ancestor are near enough to exact.
 constexpr std::size_t kTreeTriangles = 120000;
+/// Of a star, so many triangles bound a distance well enough; a hub has thousands.
+constexpr std::uint32_t kLookedAt = 32;
 /// Samples on a level's triangles, at most about.
 constexpr std::size_t kSamples = 40000;
 
@@ -66,10 +68,11 @@ struct Stars {
     std::vector<std::uint32_t> begin, triangles;
 };
 
-/// Squared distance from p to the triangles around a vertex; below `enough2` any value that low will do.
+/// Squared distance from p to the triangles around a vertex (of a hub, some of them); below `enough2` any value that low will do.
 double star_distance2(const Mesh& mesh, const Stars& stars, std::uint32_t v, Double3 p, double enough2) {
     double least = length2(p - to_double(mesh.positions[v]));
-    for (std::uint32_t s = stars.begin[v]; s < stars.begin[v + 1] && least > enough2; ++s) {
+    const std::uint32_t end = std::min(stars.begin[v + 1], stars.begin[v] + kLookedAt);
+    for (std::uint32_t s = stars.begin[v]; s < end && least > enough2; ++s) {
         const Triangle& t = mesh.triangles[stars.triangles[s]];
         least = std::min(least, distance2_to_triangle(p, to_double(mesh.positions[t[0]]), to_double(mesh.positions[t[1]]), to_double(mesh.positions[t[2]])));
     }

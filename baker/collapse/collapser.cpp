@@ -369,7 +369,7 @@ bool Collapser::run(const Progress& progress) {
     double said = 0;
     // Later passes get past what a guard stopped; the shape of the coarsest levels counts less than that
     // there is one.
-    const Strictness passes[] = {strictness_, {0.0, 1e-3, 1000, true}, {-0.5, 1e-5, 2 * kHub, false}};
+    const Strictness passes[] = {strictness_, {0.0, 1e-3, 1000, true}, {-0.2, 1e-5, 2 * kHub, true}};
     for (const Strictness& strictness : passes) {
         strictness_ = strictness;
         if (&strictness != passes) {

@@ -4,6 +4,9 @@
 // Points and vectors of the collapse engine, one at a time or four.
 #pragma once
 
+// Vectors never cross a library's edge, so their calling convention is nobody's concern.
+#pragma GCC diagnostic ignored "-Wpsabi"
+
 #include <algorithm>
 #include <cmath>
 

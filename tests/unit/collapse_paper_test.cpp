@@ -116,7 +116,7 @@ TEST_CASE("Paper, Q: the root mean square distance to the planes, by area") {
 TEST_CASE("Paper: the cost of an edge, worked out by hand") {
     const Roof roof;
     REQUIRE(roof.star_mesh.scale() == 1);
-    REQUIRE(roof.star.wings.size() == 4);
+    REQUIRE(roof.star.size == 4);
     REQUIRE(roof.star.opposite.size() == 2);
     const double k = 1.0 / 16;
     // Cur(u): the wall's normals turn by 90 degrees from both of the edge's: 0.5. Cur(v): 0, all flat. Len =
