@@ -29,7 +29,8 @@ struct BakeCommand {
 
     int run() const;
     /// The mesh to bake; if the input is a cloud of points, the surface made of it, told in `surface`.
-    Result<bake::MeshFile> load(const bake::Progress& progress, std::optional<CloudSurface>& surface, int& exit) const;
+    Result<bake::MeshFile> load(const bake::Progress& progress, std::optional<CloudSurface>& surface,
+                                int& exit) const;
     /// The lock list as options; the reason if one is unknown.
     std::optional<std::string> set_locks(bake::CollapseOptions& options) const;
 };
@@ -41,7 +42,8 @@ std::optional<std::string> BakeCommand::set_locks(bake::CollapseOptions& options
         } else if (lock.rfind("features=", 0) == 0) {
             char* end = nullptr;
             const double degrees = std::strtod(lock.c_str() + 9, &end);
-            if (*end != 0 || end == lock.c_str() + 9 || !(degrees > 0 && degrees < 180)) return "--lock features=ANGLE wants degrees between 0 and 180";
+            if (*end != 0 || end == lock.c_str() + 9 || !(degrees > 0 && degrees < 180))
+                return "--lock features=ANGLE wants degrees between 0 and 180";
             options.lock_features_degrees = degrees;
         } else {
             return "--lock knows boundary and features=ANGLE, not " + lock;
@@ -50,7 +52,8 @@ std::optional<std::string> BakeCommand::set_locks(bake::CollapseOptions& options
     return std::nullopt;
 }
 
-Result<bake::MeshFile> BakeCommand::load(const bake::Progress& progress, std::optional<CloudSurface>& surface, int& exit) const {
+Result<bake::MeshFile> BakeCommand::load(const bake::Progress& progress, std::optional<CloudSurface>& surface,
+                                         int& exit) const {
     const auto failed = [&](const Error& error) {
         exit = fail_input(input.path, error);
         return error;
@@ -59,7 +62,9 @@ Result<bake::MeshFile> BakeCommand::load(const bake::Progress& progress, std::op
         auto bytes = bake::read_file(input.path);
         if (!bytes) return failed(bytes.error());
         if (is_point_cloud(*bytes, extension_of(input.path))) {
-            if (!input.weights.empty()) return failed({ErrorCode::kArgument, "a point cloud takes no --weights: reconstruct it first", Error::kNowhere, 0});
+            if (!input.weights.empty())
+                return failed({ErrorCode::kArgument, "a point cloud takes no --weights: reconstruct it first",
+                               Error::kNowhere, 0});
             auto made = reconstruct_cloud(input.path, *bytes, cloud, common, false, progress, exit);
             if (!made) return made.error();
             bake::MeshFile file;
@@ -78,7 +83,8 @@ int BakeCommand::run() const {
     using Clock = std::chrono::steady_clock;
     const auto start = Clock::now();
     std::optional<tbb::global_control> limit;
-    if (common.threads > 0) limit.emplace(tbb::global_control::max_allowed_parallelism, std::size_t(common.threads));
+    if (common.threads > 0)
+        limit.emplace(tbb::global_control::max_allowed_parallelism, std::size_t(common.threads));
     bake::CollapseOptions options;
     options.cost = cost == "paper" ? bake::Cost::kPaper : bake::Cost::kQuadric;
     options.placement = placement == "endpoint" ? bake::Placement::kEndpoint : bake::Placement::kOptimal;
@@ -109,7 +115,10 @@ int BakeCommand::run() const {
                      {"read", to_json(file->report)},
                      {"mesh", to_json(survey)},
                      {"ratio_1_triangles", triangles},
-                     {"base", {{"vertices", mesh.base_vertices}, {"triangles", mesh.base_triangles}, {"error", error_at(mesh, 0)}}},
+                     {"base",
+                      {{"vertices", mesh.base_vertices},
+                       {"triangles", mesh.base_triangles},
+                       {"error", error_at(mesh, 0)}}},
                      {"splits", mesh.splits.size()},
                      {"components_vanished", result->report.components_vanished},
                      {"fixed_vertices", result->report.fixed_vertices},
@@ -126,15 +135,24 @@ int BakeCommand::run() const {
     }
     if (surface)
         for (const std::string& note : surface->notes) say(common, fmt::format("{}: {}", input.path, note));
-    say(common, fmt::format("{}: {} triangles, {} vertices, {} components, {} boundary edges, {} non-manifold edges ({})", input.path,
-                            with_commas(survey.triangles), with_commas(survey.vertices), with_commas(survey.components),
-                            with_commas(survey.boundary_edges), with_commas(survey.non_manifold_edges), file->report.format));
+    say(common,
+        fmt::format(
+            "{}: {} triangles, {} vertices, {} components, {} boundary edges, {} non-manifold edges ({})",
+            input.path, with_commas(survey.triangles), with_commas(survey.vertices),
+            with_commas(survey.components), with_commas(survey.boundary_edges),
+            with_commas(survey.non_manifold_edges), file->report.format));
     for (const std::string& line : describe(file->report)) say(common, "  " + line);
-    if (survey.duplicate_triangles) say(common, fmt::format("  {} duplicate triangles, kept", with_commas(survey.duplicate_triangles)));
-    if (survey.zero_area_triangles) say(common, fmt::format("  {} triangles without area, kept", with_commas(survey.zero_area_triangles)));
-    say(common, fmt::format("{}: {} splits from a base of {} triangles, {} bytes, {:.1f} bits a vertex, in {:.2f} s", output.path,
-                            with_commas(mesh.splits.size()), with_commas(mesh.base_triangles), with_commas(bytes->size()),
-                            8.0 * double(bytes->size()) / double(std::max<std::size_t>(mesh.positions.size(), 1)), seconds));
+    if (survey.duplicate_triangles)
+        say(common, fmt::format("  {} duplicate triangles, kept", with_commas(survey.duplicate_triangles)));
+    if (survey.zero_area_triangles)
+        say(common,
+            fmt::format("  {} triangles without area, kept", with_commas(survey.zero_area_triangles)));
+    say(common,
+        fmt::format("{}: {} splits from a base of {} triangles, {} bytes, {:.1f} bits a vertex, in {:.2f} s",
+                    output.path, with_commas(mesh.splits.size()), with_commas(mesh.base_triangles),
+                    with_commas(bytes->size()),
+                    8.0 * double(bytes->size()) / double(std::max<std::size_t>(mesh.positions.size(), 1)),
+                    seconds));
     if (mesh.base_vertices > 64 * std::max<std::uint64_t>(result->report.components, 1))
         say(common, "  no coarser base: " + result->report.stopped_by);
     return kDone;
@@ -144,7 +162,8 @@ int BakeCommand::run() const {
 
 void add_bake(CLI::App& app, int& exit) {
     auto command = std::make_shared<BakeCommand>();
-    CLI::App* sub = app.add_subcommand("bake", "Record the full collapse sequence of a mesh or scene as one .pmesh");
+    CLI::App* sub =
+        app.add_subcommand("bake", "Record the full collapse sequence of a mesh or scene as one .pmesh");
     sub->footer(
         "Examples:\n"
         "  vsplit bake bunny.obj -o bunny.pmesh\n"
@@ -159,10 +178,13 @@ void add_bake(CLI::App& app, int& exit) {
     sub->add_option("--cost", command->cost, "What a collapse costs: quadric, or paper (docs/collapse.md)")
         ->check(CLI::IsMember({"quadric", "paper"}))
         ->capture_default_str();
-    sub->add_option("--placement", command->placement, "Where the vertex that remains is put: optimal, or endpoint")
+    sub->add_option("--placement", command->placement,
+                    "Where the vertex that remains is put: optimal, or endpoint")
         ->check(CLI::IsMember({"optimal", "endpoint"}))
         ->capture_default_str();
-    sub->add_option("--lock", command->locks, "What never changes: boundary, features=ANGLE (degrees between triangles); may be repeated")
+    sub->add_option(
+           "--lock", command->locks,
+           "What never changes: boundary, features=ANGLE (degrees between triangles); may be repeated")
         ->type_name("WHAT")
         ->allow_extra_args(false);
     sub->add_option("--block-bytes", command->write.block_bytes, "Size that blocks of splits aim at")

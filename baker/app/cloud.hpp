@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The vsplit authors
 // SPDX-License-Identifier: MIT
 //
-// Point clouds on the command line: read, cleaned, reconstructed. Without CGAL (VSPLIT_WITH_CGAL=OFF) only told apart.
+// Point clouds on the command line: read, cleaned, reconstructed. Without CGAL (VSPLIT_WITH_CGAL=OFF) only
+// told apart.
 #pragma once
 
 #include <cstddef>
@@ -21,8 +22,8 @@ struct CloudOptions {
     std::string thin = "none", smooth = "auto";
     double outlier_factor = 3, grid_cell = 0, wlop_share = 0.5;
     bool open = false;
-    std::string medial_axis;                ///< File, or empty.
-    std::vector<std::string> dumps;         ///< WHAT DIR, one after the other.
+    std::string medial_axis;         ///< File, or empty.
+    std::vector<std::string> dumps;  ///< WHAT DIR, one after the other.
     void add_to(CLI::App& command);
 };
 
@@ -37,7 +38,8 @@ struct CloudSurface {
 bool is_point_cloud(std::span<const std::byte> bytes, const std::string& extension);
 
 /// On failure the message is said and `exit` set. `force` allows to overwrite the medial axis and dumps.
-Result<CloudSurface> reconstruct_cloud(const std::string& path, std::span<const std::byte> bytes, const CloudOptions& options,
-                                       const Common& common, bool force, const bake::Progress& progress, int& exit);
+Result<CloudSurface> reconstruct_cloud(const std::string& path, std::span<const std::byte> bytes,
+                                       const CloudOptions& options, const Common& common, bool force,
+                                       const bake::Progress& progress, int& exit);
 
 }  // namespace vsplit::app

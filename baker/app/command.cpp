@@ -32,7 +32,9 @@ double now_seconds() {
 void Common::add_to(CLI::App& command) {
     command.add_flag("--json", json, "Print a machine-readable report to stdout");
     command.add_flag("-q,--quiet", quiet, "Print nothing but errors");
-    command.add_option("--threads", threads, "Threads to use, 0 for all; the result is the same for any number")->check(CLI::Range(0, 1024));
+    command
+        .add_option("--threads", threads, "Threads to use, 0 for all; the result is the same for any number")
+        ->check(CLI::Range(0, 1024));
 }
 
 void Output::add_to(CLI::App& command, const char* what, bool required) {
@@ -42,9 +44,14 @@ void Output::add_to(CLI::App& command, const char* what, bool required) {
 }
 
 int fail_input(const std::string& file, const Error& error) {
-    return fail(file, error, error.code == ErrorCode::kArgument ? kUsage : error.code == ErrorCode::kCancelled ? kFailed : kBadInput);
+    return fail(file, error,
+                error.code == ErrorCode::kArgument    ? kUsage
+                : error.code == ErrorCode::kCancelled ? kFailed
+                                                      : kBadInput);
 }
-int fail_output(const std::string& file, const Error& error) { return fail(file, error, kBadOutput); }
+int fail_output(const std::string& file, const Error& error) {
+    return fail(file, error, kBadOutput);
+}
 int fail_usage(const std::string& message) {
     fmt::print(stderr, "vsplit: {}\n", message);
     return kUsage;
@@ -54,10 +61,12 @@ int check_output(const Output& output) {
     namespace fs = std::filesystem;
     std::error_code ignored;
     if (!output.force && fs::is_regular_file(output.path, ignored))
-        return fail_output(output.path, {ErrorCode::kExists, "exists already; pass --force to overwrite it", Error::kNowhere, 0});
+        return fail_output(output.path, {ErrorCode::kExists, "exists already; pass --force to overwrite it",
+                                         Error::kNowhere, 0});
     const fs::path folder = fs::path(output.path).parent_path();
     if (!folder.empty() && !fs::is_directory(folder, ignored))
-        return fail_output(output.path, {ErrorCode::kIo, "there is no folder " + folder.string(), Error::kNowhere, 0});
+        return fail_output(output.path,
+                           {ErrorCode::kIo, "there is no folder " + folder.string(), Error::kNowhere, 0});
     return kDone;
 }
 
@@ -69,10 +78,14 @@ int write_output(const Output& output, std::span<const std::byte> bytes) {
 void say(const Common& common, const std::string& text) {
     if (!common.quiet && !common.json) fmt::print("{}\n", text);
 }
-void print_json(const Json& json) { fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace)); }
+void print_json(const Json& json) {
+    fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
+}
 
 ProgressBar::ProgressBar(const Common& common) : shown_(!common.quiet && isatty(STDERR_FILENO)) {}
-ProgressBar::~ProgressBar() { clear(); }
+ProgressBar::~ProgressBar() {
+    clear();
+}
 
 bake::Progress ProgressBar::callback() {
     if (!shown_) return {};
@@ -90,7 +103,8 @@ void ProgressBar::draw(std::string_view stage, double done) {
     const int columns = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
     const int width = std::clamp(columns - 30, 10, 50);
     const int full = static_cast<int>(std::clamp(done, 0.0, 1.0) * width);
-    fmt::print(stderr, "\r\033[K{:<14} [{:#<{}}{:.<{}}] {:3.0f} %", stage, "", full, "", width - full, 100 * std::clamp(done, 0.0, 1.0));
+    fmt::print(stderr, "\r\033[K{:<14} [{:#<{}}{:.<{}}] {:3.0f} %", stage, "", full, "", width - full,
+               100 * std::clamp(done, 0.0, 1.0));
     std::fflush(stderr);
     dirty_ = true;
 }
@@ -116,7 +130,8 @@ Result<ProgressiveMesh> load_progressive(const std::string& path, const Common&,
 
 std::string extension_of(const std::string& path) {
     std::string extension = std::filesystem::path(path).extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return char(std::tolower(c)); });
     return extension;
 }
 
@@ -126,6 +141,8 @@ std::string with_commas(std::uint64_t number) {
     return digits;
 }
 
-std::string short_number(double value) { return fmt::format("{:.3g}", value); }
+std::string short_number(double value) {
+    return fmt::format("{:.3g}", value);
+}
 
 }  // namespace vsplit::app

@@ -4,14 +4,13 @@
 // What all subcommands share: options, messages, exit codes.
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <cstddef>
+#include <nlohmann/json.hpp>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
-
-#include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
 
 #include "vsplit/bake/progress.hpp"
 #include "vsplit/progressive_mesh.hpp"
@@ -23,10 +22,10 @@ namespace vsplit::app {
 /// Exit codes, stable (docs/cli.md).
 enum Exit : int {
     kDone = 0,
-    kFailed = 1,       ///< A check did not pass (verify), or the work was interrupted.
-    kUsage = 2,        ///< The command line is wrong.
-    kBadInput = 3,     ///< An input cannot be opened, or is not what it should be.
-    kBadOutput = 4,    ///< An output exists (and no --force), or cannot be written.
+    kFailed = 1,     ///< A check did not pass (verify), or the work was interrupted.
+    kUsage = 2,      ///< The command line is wrong.
+    kBadInput = 3,   ///< An input cannot be opened, or is not what it should be.
+    kBadOutput = 4,  ///< An output exists (and no --force), or cannot be written.
 };
 
 /// Ordered, so that output keeps the order in which it is said.
@@ -52,7 +51,8 @@ int fail_input(const std::string& file, const Error& error);
 int fail_output(const std::string& file, const Error& error);
 int fail_usage(const std::string& message);
 
-/// Refuses early what write_output() would refuse late: an existing file without --force, a folder that is not there.
+/// Refuses early what write_output() would refuse late: an existing file without --force, a folder that is
+/// not there.
 int check_output(const Output& output);
 int write_output(const Output& output, std::span<const std::byte> bytes);
 

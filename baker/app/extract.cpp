@@ -37,14 +37,20 @@ int ExtractCommand::run() const {
     std::optional<std::string> note;
     std::size_t level = 0;
     if (ratio >= 0 || triangles >= 0) {
-        const std::uint64_t wanted = ratio >= 0 ? triangles_for_ratio(*mesh, ratio) : std::uint64_t(triangles);
+        const std::uint64_t wanted =
+            ratio >= 0 ? triangles_for_ratio(*mesh, ratio) : std::uint64_t(triangles);
         level = level_for_triangles(*mesh, wanted);
-        if (wanted <= mesh->triangles.size()) note = why_not(*mesh, level, wanted);
-        else note = fmt::format("{} triangles asked for, the full mesh has {}", with_commas(wanted), with_commas(mesh->triangles.size()));
+        if (wanted <= mesh->triangles.size())
+            note = why_not(*mesh, level, wanted);
+        else
+            note = fmt::format("{} triangles asked for, the full mesh has {}", with_commas(wanted),
+                               with_commas(mesh->triangles.size()));
     } else if (vertices >= 0) {
         level = level_for_vertices(*mesh, std::uint64_t(vertices));
         const std::uint64_t got = vertices_at(*mesh, level);
-        if (got != std::uint64_t(vertices)) note = fmt::format("{} vertices asked for, {} is the nearest", with_commas(std::uint64_t(vertices)), with_commas(got));
+        if (got != std::uint64_t(vertices))
+            note = fmt::format("{} vertices asked for, {} is the nearest",
+                               with_commas(std::uint64_t(vertices)), with_commas(got));
     } else {
         level = level_for_error(*mesh, error);
     }
@@ -65,15 +71,21 @@ int ExtractCommand::run() const {
     if (const int failed = write_output(output, bytes)) return failed;
     const double kept = full > 0 ? double(cut.triangles.size()) / double(full) : 1;
     if (common.json) {
-        Json json = {{"input", input},       {"output", output.path},     {"level", level},
-                     {"triangles", cut.triangles.size()}, {"vertices", cut.positions.size()}, {"ratio", kept},
-                     {"error", recorded},    {"bytes", bytes.size()}};
+        Json json = {{"input", input},
+                     {"output", output.path},
+                     {"level", level},
+                     {"triangles", cut.triangles.size()},
+                     {"vertices", cut.positions.size()},
+                     {"ratio", kept},
+                     {"error", recorded},
+                     {"bytes", bytes.size()}};
         if (note) json["note"] = *note;
         if (!common.quiet) print_json(json);
         return kDone;
     }
-    say(common, fmt::format("{}: {} triangles ({:.2f} %), {} vertices, error {}, {} bytes", output.path, with_commas(cut.triangles.size()),
-                            100 * kept, with_commas(cut.positions.size()), short_number(recorded), with_commas(bytes.size())));
+    say(common, fmt::format("{}: {} triangles ({:.2f} %), {} vertices, error {}, {} bytes", output.path,
+                            with_commas(cut.triangles.size()), 100 * kept, with_commas(cut.positions.size()),
+                            short_number(recorded), with_commas(bytes.size())));
     if (note && !common.quiet) fmt::print(stderr, "vsplit: {}: {}\n", output.path, *note);
     return kDone;
 }
@@ -87,13 +99,18 @@ void add_extract(CLI::App& app, int& exit) {
         "Examples:\n"
         "  vsplit extract bunny.pmesh --ratio 0.4 -o bunny-40.glb\n"
         "  vsplit extract bunny.pmesh --triangles 5000 -o bunny-5k.ply\n"
-        "  vsplit extract bunny.pmesh --error 0.001 -o bunny-fine.obj     coarsest level within that distance");
+        "  vsplit extract bunny.pmesh --error 0.001 -o bunny-fine.obj     coarsest level within that "
+        "distance");
     sub->add_option("input", command->input, "The .pmesh")->required()->type_name("FILE");
     command->output.add_to(*sub, "Mesh to write: .glb, .ply or .obj");
-    sub->add_option("--ratio", command->ratio, "Triangles kept over triangles of the input, 0 to 1")->check(CLI::Range(0.0, 1.0));
-    sub->add_option("--triangles", command->triangles, "At most so many triangles")->check(CLI::NonNegativeNumber);
-    sub->add_option("--vertices", command->vertices, "At most so many vertices")->check(CLI::NonNegativeNumber);
-    sub->add_option("--error", command->error, "At most this distance from the full mesh, in its units")->check(CLI::NonNegativeNumber);
+    sub->add_option("--ratio", command->ratio, "Triangles kept over triangles of the input, 0 to 1")
+        ->check(CLI::Range(0.0, 1.0));
+    sub->add_option("--triangles", command->triangles, "At most so many triangles")
+        ->check(CLI::NonNegativeNumber);
+    sub->add_option("--vertices", command->vertices, "At most so many vertices")
+        ->check(CLI::NonNegativeNumber);
+    sub->add_option("--error", command->error, "At most this distance from the full mesh, in its units")
+        ->check(CLI::NonNegativeNumber);
     command->common.add_to(*sub);
     sub->callback([command, &exit] { exit = command->run(); });
 }

@@ -27,11 +27,14 @@ bake::Weld weld_of(const std::string& name) {
 }  // namespace
 
 void InputOptions::add_to(CLI::App& command) {
-    command.add_option("--weights", weights,
-                       "Painted weights: a text file with one number a vertex, the name of a PLY property, or a colour channel of a glTF "
-                       "(COLOR_0.r). Without: a PLY's own 'quality' or 'weight'")
+    command
+        .add_option("--weights", weights,
+                    "Painted weights: a text file with one number a vertex, the name of a PLY property, or a "
+                    "colour channel of a glTF "
+                    "(COLOR_0.r). Without: a PLY's own 'quality' or 'weight'")
         ->type_name("FILE|NAME");
-    command.add_option("--weld", weld, "Which vertices at the same place become one: auto, none, boundary, all")
+    command
+        .add_option("--weld", weld, "Which vertices at the same place become one: auto, none, boundary, all")
         ->check(CLI::IsMember({"auto", "none", "boundary", "all"}))
         ->capture_default_str();
 }
@@ -46,7 +49,8 @@ Result<bake::MeshFile> load_mesh(const InputOptions& options, int& exit) {
     const std::string extension = extension_of(options.path);
     const bool scene = is_gltf(*bytes, extension);
     std::error_code ignored;
-    const bool weights_are_file = !options.weights.empty() && std::filesystem::exists(options.weights, ignored);
+    const bool weights_are_file =
+        !options.weights.empty() && std::filesystem::exists(options.weights, ignored);
 
     auto file = [&]() -> Result<bake::MeshFile> {
         if (scene) {
@@ -67,7 +71,8 @@ Result<bake::MeshFile> load_mesh(const InputOptions& options, int& exit) {
         if (!text) return failed(options.weights, text.error());
         auto weights = bake::parse_weights(*text, file->report.vertices_in);
         if (!weights) return failed(options.weights, weights.error());
-        if (const Status applied = bake::apply_weights(*file, *weights); !applied) return failed(options.weights, applied.error());
+        if (const Status applied = bake::apply_weights(*file, *weights); !applied)
+            return failed(options.weights, applied.error());
     }
     return file;
 }

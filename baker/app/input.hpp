@@ -13,7 +13,8 @@ namespace vsplit::app {
 
 struct InputOptions {
     std::string path;
-    std::string weights;  ///< A file, a PLY property, or a glTF channel (COLOR_0.r); empty: what the mesh brings.
+    std::string
+        weights;  ///< A file, a PLY property, or a glTF channel (COLOR_0.r); empty: what the mesh brings.
     std::string weld = "auto";
     void add_to(CLI::App& command);
 };

@@ -4,12 +4,12 @@
 // From what a person asks for to a level of a progressive mesh.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string>
-
-#include <fmt/format.h>
 
 #include "command.hpp"
 #include "vsplit/progressive_mesh.hpp"
@@ -22,14 +22,19 @@ inline std::uint64_t triangles_for_ratio(const ProgressiveMesh& mesh, double rat
 }
 
 /// Why `level` has not about `wanted` triangles, if it has not.
-inline std::optional<std::string> why_not(const ProgressiveMesh& mesh, std::size_t level, std::uint64_t wanted) {
+inline std::optional<std::string> why_not(const ProgressiveMesh& mesh, std::size_t level,
+                                          std::uint64_t wanted) {
     const std::uint64_t got = triangles_at(mesh, level);
     if (got > wanted)
-        return fmt::format("{} triangles asked for, but the base mesh has {}: no edge was left that could collapse without changing the topology",
-                           with_commas(wanted), with_commas(got));
+        return fmt::format(
+            "{} triangles asked for, but the base mesh has {}: no edge was left that could collapse without "
+            "changing the topology",
+            with_commas(wanted), with_commas(got));
     if (wanted - got > 1)
-        return fmt::format("{} triangles asked for, {} is the nearest level below: one split brings {} triangles at once here",
-                           with_commas(wanted), with_commas(got), with_commas(triangles_at(mesh, level + 1) - got));
+        return fmt::format(
+            "{} triangles asked for, {} is the nearest level below: one split brings {} triangles at once "
+            "here",
+            with_commas(wanted), with_commas(got), with_commas(triangles_at(mesh, level + 1) - got));
     return std::nullopt;
 }
 

@@ -42,7 +42,8 @@ int LodsCommand::run() const {
     for (const double ratio : finest_first) {
         const std::uint64_t wanted = triangles_for_ratio(*mesh, ratio);
         const std::size_t level = level_for_triangles(*mesh, wanted);
-        if (const auto note = why_not(*mesh, level, wanted)) notes.push_back(fmt::format("ratio {}: {}", ratio, *note));
+        if (const auto note = why_not(*mesh, level, wanted))
+            notes.push_back(fmt::format("ratio {}: {}", ratio, *note));
         if (!cuts.empty() && cuts.back().second == level) {
             notes.push_back(fmt::format("ratio {}: the same level as the one before, left out", ratio));
             continue;
@@ -53,20 +54,30 @@ int LodsCommand::run() const {
     for (const auto& [ratio, level] : cuts) {
         live.go_to(level);
         levels.push_back({live.snapshot(), live.error()});
-        table.push_back({{"ratio", ratio}, {"triangles", levels.back().mesh.triangles.size()},
-                         {"vertices", levels.back().mesh.positions.size()}, {"error", levels.back().error}});
+        table.push_back({{"ratio", ratio},
+                         {"triangles", levels.back().mesh.triangles.size()},
+                         {"vertices", levels.back().mesh.positions.size()},
+                         {"error", levels.back().error}});
     }
     auto glb = bake::encode_glb(levels);
     if (!glb) return fail_output(output.path, glb.error());
     if (const int failed = write_output(output, *glb)) return failed;
     if (common.json) {
-        if (!common.quiet) print_json({{"input", input}, {"output", output.path}, {"levels", table}, {"bytes", glb->size()}, {"notes", notes}});
+        if (!common.quiet)
+            print_json({{"input", input},
+                        {"output", output.path},
+                        {"levels", table},
+                        {"bytes", glb->size()},
+                        {"notes", notes}});
         return kDone;
     }
     say(common, fmt::format("{}: {} levels, {} bytes", output.path, levels.size(), with_commas(glb->size())));
     for (std::size_t i = 0; i < levels.size(); ++i)
-        say(common, fmt::format("  LOD {}: {:>11} triangles ({:6.2f} %), error {}", i, with_commas(levels[i].mesh.triangles.size()),
-                                100.0 * double(levels[i].mesh.triangles.size()) / double(std::max<std::size_t>(full, 1)), short_number(levels[i].error)));
+        say(common, fmt::format("  LOD {}: {:>11} triangles ({:6.2f} %), error {}", i,
+                                with_commas(levels[i].mesh.triangles.size()),
+                                100.0 * double(levels[i].mesh.triangles.size()) /
+                                    double(std::max<std::size_t>(full, 1)),
+                                short_number(levels[i].error)));
     if (!common.quiet)
         for (const std::string& note : notes) fmt::print(stderr, "vsplit: {}: {}\n", output.path, note);
     return kDone;
@@ -82,7 +93,10 @@ void add_lods(CLI::App& app, int& exit) {
         "  vsplit lods bunny.pmesh --ratios 1,0.5,0.25,0.1 -o bunny-lods.glb\n"
         "Screen coverages come from the recorded errors: docs/lods.md.");
     sub->add_option("input", command->input, "The .pmesh")->required()->type_name("FILE");
-    sub->add_option("--ratios", command->ratios, "Triangles kept over triangles of the input, a comma between")->required()->delimiter(',');
+    sub->add_option("--ratios", command->ratios,
+                    "Triangles kept over triangles of the input, a comma between")
+        ->required()
+        ->delimiter(',');
     command->output.add_to(*sub, "The .glb to write");
     command->common.add_to(*sub);
     sub->callback([command, &exit] { exit = command->run(); });

@@ -13,7 +13,8 @@
 int main(int argc, char** argv) {
     using namespace vsplit::app;
     CLI::App app{
-        "vsplit: progressive meshes. One .pmesh file holds a base mesh and every vertex split back to the full model.\n\n"
+        "vsplit: progressive meshes. One .pmesh file holds a base mesh and every vertex split back to the "
+        "full model.\n\n"
         "  vsplit bake hero.glb -o hero.pmesh              record the whole collapse sequence\n"
         "  vsplit extract hero.pmesh --ratio 0.4 -o hero-40.glb\n"
         "  vsplit lods hero.pmesh --ratios 1,0.5,0.25 -o hero-lods.glb\n"};

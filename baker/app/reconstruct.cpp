@@ -24,11 +24,15 @@ struct ReconstructCommand {
 
 int ReconstructCommand::run() const {
     const std::string extension = extension_of(output.path);
-    if (extension != ".ply" && extension != ".obj" && extension != ".glb") return fail_usage("reconstruct writes .ply, .glb or .obj, not '" + extension + "'");
+    if (extension != ".ply" && extension != ".obj" && extension != ".glb")
+        return fail_usage("reconstruct writes .ply, .glb or .obj, not '" + extension + "'");
     for (std::size_t i = 0; i + 1 < cloud.dumps.size(); ++i)
-        if (const std::string& what = cloud.dumps[i]; what != "voronoi" && what != "poles" && what != "power" && what != "labels")
-            return fail_usage("--dump knows voronoi, poles, power and labels, then a folder; not '" + what + "'");
-    if (cloud.dumps.size() == 1) return fail_usage("--dump wants what to write, then a folder: --dump poles DIR");
+        if (const std::string& what = cloud.dumps[i];
+            what != "voronoi" && what != "poles" && what != "power" && what != "labels")
+            return fail_usage("--dump knows voronoi, poles, power and labels, then a folder; not '" + what +
+                              "'");
+    if (cloud.dumps.size() == 1)
+        return fail_usage("--dump wants what to write, then a folder: --dump poles DIR");
     if (const int refused = check_output(output)) return refused;
     auto bytes = bake::read_file(input);
     if (!bytes) return fail_input(input, bytes.error());
@@ -64,14 +68,20 @@ void add_reconstruct(CLI::App& app, int& exit) {
     sub->footer(
         "Examples:\n"
         "  vsplit reconstruct scan.xyz -o scan.ply\n"
-        "  vsplit reconstruct tile.ply --open -o terrain.glb              terrain: one sheet with a boundary\n"
-        "  vsplit reconstruct scan.xyz --method classic --medial-axis axis.vtp --dump poles labels DIR -o scan.obj\n"
+        "  vsplit reconstruct tile.ply --open -o terrain.glb              terrain: one sheet with a "
+        "boundary\n"
+        "  vsplit reconstruct scan.xyz --method classic --medial-axis axis.vtp --dump poles labels DIR -o "
+        "scan.obj\n"
         "Reads .xyz .txt .pts .asc .csv .ply .pcd.");
     sub->add_option("input", command->input, "Point cloud")->required()->type_name("IN");
     command->output.add_to(*sub, "Mesh to write: .ply, .glb or .obj");
     command->cloud.add_to(*sub);
-    sub->add_option("--medial-axis", command->cloud.medial_axis, "Write the poles and the power shape as VTK XML (.vtp)")->type_name("FILE")->group("Points");
-    sub->add_option("--dump", command->cloud.dumps, "Write voronoi, poles, power or labels as VTK XML into a folder")
+    sub->add_option("--medial-axis", command->cloud.medial_axis,
+                    "Write the poles and the power shape as VTK XML (.vtp)")
+        ->type_name("FILE")
+        ->group("Points");
+    sub->add_option("--dump", command->cloud.dumps,
+                    "Write voronoi, poles, power or labels as VTK XML into a folder")
         ->type_name("WHAT... DIR")
         ->group("Points");
     command->common.add_to(*sub);

@@ -39,7 +39,8 @@ int SampleCommand::run() const {
     std::vector<std::byte> bytes;
     std::string what;
     if (mesh) {
-        if (extension != ".ply" && extension != ".obj" && extension != ".glb") return fail_usage("a sample mesh is written as .ply, .obj or .glb");
+        if (extension != ".ply" && extension != ".obj" && extension != ".glb")
+            return fail_usage("a sample mesh is written as .ply, .obj or .glb");
         const Mesh made = bake::make_sample_mesh(sample, triangles);
         if (extension == ".glb") {
             const bake::GltfLevel one{made, 0};
@@ -51,13 +52,16 @@ int SampleCommand::run() const {
         }
         what = with_commas(made.triangles.size()) + " triangles";
     } else {
-        if (extension != ".xyz" && extension != ".txt") return fail_usage("sample points are written as .xyz or .txt");
+        if (extension != ".xyz" && extension != ".txt")
+            return fail_usage("sample points are written as .xyz or .txt");
         bytes = text_of(bake::make_sample_points(sample, points));
         what = with_commas(points) + " points";
     }
     if (const int failed = write_output(output, bytes)) return failed;
-    if (common.json && !common.quiet) print_json({{"output", output.path}, {"sample", name}, {"bytes", bytes.size()}});
-    say(common, fmt::format("{}: {} of the {}, {} bytes", output.path, what, name, with_commas(bytes.size())));
+    if (common.json && !common.quiet)
+        print_json({{"output", output.path}, {"sample", name}, {"bytes", bytes.size()}});
+    say(common,
+        fmt::format("{}: {} of the {}, {} bytes", output.path, what, name, with_commas(bytes.size())));
     return kDone;
 }
 
@@ -70,10 +74,15 @@ void add_sample(CLI::App& app, int& exit) {
         "Examples:\n"
         "  vsplit sample whale --mesh -o whale.ply\n"
         "  vsplit sample ocean --points 20000 -o ocean.xyz");
-    sub->add_option("name", command->name, "whale or ocean")->required()->check(CLI::IsMember({"whale", "ocean"}));
-    sub->add_option("--points", command->points, "Write so many points of the surface")->check(CLI::Range(4, 20'000'000));
+    sub->add_option("name", command->name, "whale or ocean")
+        ->required()
+        ->check(CLI::IsMember({"whale", "ocean"}));
+    sub->add_option("--points", command->points, "Write so many points of the surface")
+        ->check(CLI::Range(4, 20'000'000));
     sub->add_flag("--mesh", command->mesh, "Write a mesh");
-    sub->add_option("--triangles", command->triangles, "About so many triangles, with --mesh")->check(CLI::Range(100, 20'000'000))->capture_default_str();
+    sub->add_option("--triangles", command->triangles, "About so many triangles, with --mesh")
+        ->check(CLI::Range(100, 20'000'000))
+        ->capture_default_str();
     command->output.add_to(*sub, "The file to write: .xyz or .txt for points; .ply, .obj or .glb for a mesh");
     command->common.add_to(*sub);
     sub->callback([command, &exit] { exit = command->run(); });

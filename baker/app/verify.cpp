@@ -28,7 +28,8 @@ struct Check {
     std::string detail;
 };
 
-/// A triangle as the bits of its corners, the least first, orientation kept: equal for equal triangles however meshes number them.
+/// A triangle as the bits of its corners, the least first, orientation kept: equal for equal triangles
+/// however meshes number them.
 struct CornerBits {
     std::array<std::uint32_t, 4> bits;
     auto operator<=>(const CornerBits&) const = default;
@@ -56,16 +57,24 @@ std::vector<TriangleBits> triangle_bits(const Mesh& mesh, bool with_weights) {
 Check compare(const Mesh& full, const Mesh& input) {
     const std::string name = "full refinement equals the input";
     const bake::MeshSurvey a = bake::survey_mesh(full), b = bake::survey_mesh(input);
-    const auto differ = [&](const char* what, std::uint64_t x, std::uint64_t y) { return Check{name, false, fmt::format("{} {} in the file, {} in the input", x, what, y)}; };
+    const auto differ = [&](const char* what, std::uint64_t x, std::uint64_t y) {
+        return Check{name, false, fmt::format("{} {} in the file, {} in the input", x, what, y)};
+    };
     if (a.triangles != b.triangles) return differ("triangles", a.triangles, b.triangles);
     if (a.vertices != b.vertices) return differ("vertices", a.vertices, b.vertices);
     if (a.components != b.components) return differ("components", a.components, b.components);
-    if (a.boundary_edges != b.boundary_edges) return differ("boundary edges", a.boundary_edges, b.boundary_edges);
-    if (a.non_manifold_edges != b.non_manifold_edges) return differ("non-manifold edges", a.non_manifold_edges, b.non_manifold_edges);
-    if (a.non_manifold_vertices != b.non_manifold_vertices) return differ("non-manifold vertices", a.non_manifold_vertices, b.non_manifold_vertices);
+    if (a.boundary_edges != b.boundary_edges)
+        return differ("boundary edges", a.boundary_edges, b.boundary_edges);
+    if (a.non_manifold_edges != b.non_manifold_edges)
+        return differ("non-manifold edges", a.non_manifold_edges, b.non_manifold_edges);
+    if (a.non_manifold_vertices != b.non_manifold_vertices)
+        return differ("non-manifold vertices", a.non_manifold_vertices, b.non_manifold_vertices);
     const bool weights = !full.weights.empty() && !input.weights.empty();
-    if (triangle_bits(full, weights) != triangle_bits(input, weights)) return {name, false, "the corners of some triangle differ"};
-    return {name, true, fmt::format("{} triangles, {} vertices, every float{}", with_commas(a.triangles), with_commas(a.vertices), weights ? " and weight" : "")};
+    if (triangle_bits(full, weights) != triangle_bits(input, weights))
+        return {name, false, "the corners of some triangle differ"};
+    return {name, true,
+            fmt::format("{} triangles, {} vertices, every float{}", with_commas(a.triangles),
+                        with_commas(a.vertices), weights ? " and weight" : "")};
 }
 
 /// Bytes of all that a renderer reads at a level.
@@ -94,9 +103,11 @@ int VerifyCommand::run() const {
     if (!info) return fail_input(path, info.error());
     auto mesh = read_progressive_mesh(*bytes, limits);
     if (!mesh) return fail_input(path, mesh.error());
-    checks.push_back({"checksums and structure", true, fmt::format("header, table, base and {} blocks", info->blocks.size())});
+    checks.push_back({"checksums and structure", true,
+                      fmt::format("header, table, base and {} blocks", info->blocks.size())});
     // Reading has replayed every split against the rules (progressive_mesh_fault); say how much that was.
-    checks.push_back({"every split keeps a sound mesh", true, fmt::format("{} splits", with_commas(mesh->splits.size()))});
+    checks.push_back(
+        {"every split keeps a sound mesh", true, fmt::format("{} splits", with_commas(mesh->splits.size()))});
 
     LiveMesh live(std::move(*mesh));
     ProgressBar bar(common);
@@ -114,22 +125,27 @@ int VerifyCommand::run() const {
         hashes.push_back(hash_buffers(live));
         const std::uint32_t vertices = i == 0 ? info->base_vertices : info->blocks[i - 1].vertices_end;
         const std::uint32_t triangles = i == 0 ? info->base_triangles : info->blocks[i - 1].triangles_end;
-        if (live.positions().size() != vertices || live.triangles().size() != triangles) bad = fmt::format("prefix {} has other counts than the table says", i);
+        if (live.positions().size() != vertices || live.triangles().size() != triangles)
+            bad = fmt::format("prefix {} has other counts than the table says", i);
         if (full.manifold() && bad.empty()) {
             const bake::MeshSurvey survey = bake::survey_mesh(live.snapshot());
-            if (!survey.manifold()) bad = fmt::format("prefix {} is not manifold, though the full mesh is", i);
-            if (full.closed() && !survey.closed()) bad = fmt::format("prefix {} is open, though the full mesh is closed", i);
+            if (!survey.manifold())
+                bad = fmt::format("prefix {} is not manifold, though the full mesh is", i);
+            if (full.closed() && !survey.closed())
+                bad = fmt::format("prefix {} is open, though the full mesh is closed", i);
         }
         if (progress) progress("verify", 0.5 * double(i + 1) / double(ends.size()));
     }
-    checks.push_back({"every declared prefix is a mesh", bad.empty(), bad.empty() ? fmt::format("{} prefixes", ends.size()) : bad});
+    checks.push_back({"every declared prefix is a mesh", bad.empty(),
+                      bad.empty() ? fmt::format("{} prefixes", ends.size()) : bad});
     bad.clear();
     for (std::size_t i = ends.size(); i-- > 0;) {
         live.go_to(ends[i]);
         if (hash_buffers(live) != hashes[i]) bad = fmt::format("prefix {} comes back with other bytes", i);
         if (progress) progress("verify", 1 - 0.5 * double(i) / double(ends.size()));
     }
-    checks.push_back({"forward then back restores every byte", bad.empty(), bad.empty() ? fmt::format("{} prefixes", ends.size()) : bad});
+    checks.push_back({"forward then back restores every byte", bad.empty(),
+                      bad.empty() ? fmt::format("{} prefixes", ends.size()) : bad});
     if (!against.path.empty()) {
         int exit = kDone;
         auto input = load_mesh(against, exit);
@@ -141,11 +157,14 @@ int VerifyCommand::run() const {
     const bool passed = std::all_of(checks.begin(), checks.end(), [](const Check& c) { return c.passed; });
     if (common.json && !common.quiet) {
         Json list = Json::array();
-        for (const Check& c : checks) list.push_back({{"check", c.name}, {"passed", c.passed}, {"detail", c.detail}});
+        for (const Check& c : checks)
+            list.push_back({{"check", c.name}, {"passed", c.passed}, {"detail", c.detail}});
         print_json({{"input", path}, {"passed", passed}, {"checks", list}});
     }
-    for (const Check& c : checks) say(common, fmt::format("{} {}: {}", c.passed ? "ok  " : "FAIL", c.name, c.detail));
-    if (!passed && (common.quiet || common.json)) fmt::print(stderr, "vsplit: {}: verification failed\n", path);
+    for (const Check& c : checks)
+        say(common, fmt::format("{} {}: {}", c.passed ? "ok  " : "FAIL", c.name, c.detail));
+    if (!passed && (common.quiet || common.json))
+        fmt::print(stderr, "vsplit: {}: verification failed\n", path);
     return passed ? kDone : kFailed;
 }
 
@@ -153,10 +172,13 @@ int VerifyCommand::run() const {
 
 void add_verify(CLI::App& app, int& exit) {
     auto command = std::make_shared<VerifyCommand>();
-    CLI::App* sub = app.add_subcommand("verify", "Check a .pmesh: checksums, every prefix, refinement and its undoing, and the input it was made of");
+    CLI::App* sub = app.add_subcommand(
+        "verify",
+        "Check a .pmesh: checksums, every prefix, refinement and its undoing, and the input it was made of");
     sub->footer("Example:\n  vsplit verify bunny.pmesh --against bunny.obj");
     sub->add_option("input", command->path, "The .pmesh")->required()->type_name("FILE");
-    sub->add_option("--against", command->against.path, "The mesh or scene that it was baked from")->type_name("IN");
+    sub->add_option("--against", command->against.path, "The mesh or scene that it was baked from")
+        ->type_name("IN");
     command->against.add_to(*sub);
     command->common.add_to(*sub);
     sub->callback([command, &exit] { exit = command->run(); });

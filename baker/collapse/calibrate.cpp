@@ -23,18 +23,23 @@ namespace {
 constexpr double kSafety = 1.2;
 /// From one measured level to the next coarser.
 constexpr double kLevelRatio = 0.7;
-/// Between two measured levels, the error is at least this share of the coarser one's, so that a jump between them is not missed by much.
+/// Between two measured levels, the error is at least this share of the coarser one's, so that a jump between
+/// them is not missed by much.
 constexpr double kShareOfCoarser = 0.8;
-/// Coarse levels look at the input's vertices in steps: the distance varies as slowly as their triangles are large.
+/// Coarse levels look at the input's vertices in steps: the distance varies as slowly as their triangles are
+/// large.
 constexpr std::size_t kDensePass = 50000;
-/// A tree over a level is built where the level is small; above, the stars around a vertex's ancestor are near enough to exact.
+/// A tree over a level is built where the level is small; above, the stars around a vertex's ancestor are
+/// near enough to exact.
 constexpr std::size_t kTreeTriangles = 120000;
 /// Of a star, so many triangles bound a distance well enough; a hub has thousands.
 constexpr std::uint32_t kLookedAt = 32;
 /// Samples on a level's triangles, at most about.
 constexpr std::size_t kSamples = 40000;
 
-Double3 to_double(const Float3& p) { return {double(p.x), double(p.y), double(p.z)}; }
+Double3 to_double(const Float3& p) {
+    return {double(p.x), double(p.y), double(p.z)};
+}
 
 /// A point and an upper bound of its squared distance to the other surface.
 struct Probe {
@@ -42,22 +47,25 @@ struct Probe {
     std::uint32_t index;
 };
 
-/// The largest distance among probes whose bounds are known, if it is above `enough2` (squared), asking `exact2` for as few as it takes: by
-/// falling bound, until none that is left could be farther.
+/// The largest distance among probes whose bounds are known, if it is above `enough2` (squared), asking
+/// `exact2` for as few as it takes: by falling bound, until none that is left could be farther.
 template <class Exact>
 double farthest(std::vector<Probe>& probes, double enough2, const Exact& exact2) {
-    const auto end = std::partition(probes.begin(), probes.end(), [&](const Probe& p) { return p.bound2 > enough2; });
+    const auto end =
+        std::partition(probes.begin(), probes.end(), [&](const Probe& p) { return p.bound2 > enough2; });
     std::sort(probes.begin(), end, [](const Probe& a, const Probe& b) {
         return a.bound2 != b.bound2 ? a.bound2 > b.bound2 : a.index < b.index;
     });
     double most = enough2;
-    for (auto probe = probes.begin(); probe != end && probe->bound2 > most; ++probe) most = std::max(most, exact2(*probe, most));
+    for (auto probe = probes.begin(); probe != end && probe->bound2 > most; ++probe)
+        most = std::max(most, exact2(*probe, most));
     return std::sqrt(most);
 }
 
 /// Triangles around each vertex of a level.
 struct Stars {
-    explicit Stars(const Mesh& mesh) : begin(mesh.positions.size() + 1, 0), triangles(3 * mesh.triangles.size()) {
+    explicit Stars(const Mesh& mesh)
+        : begin(mesh.positions.size() + 1, 0), triangles(3 * mesh.triangles.size()) {
         for (const Triangle& t : mesh.triangles)
             for (const std::uint32_t v : t) ++begin[v + 1];
         std::partial_sum(begin.begin(), begin.end(), begin.begin());
@@ -68,13 +76,16 @@ struct Stars {
     std::vector<std::uint32_t> begin, triangles;
 };
 
-/// Squared distance from p to the triangles around a vertex (of a hub, some of them); below `enough2` any value that low will do.
+/// Squared distance from p to the triangles around a vertex (of a hub, some of them); below `enough2` any
+/// value that low will do.
 double star_distance2(const Mesh& mesh, const Stars& stars, std::uint32_t v, Double3 p, double enough2) {
     double least = length2(p - to_double(mesh.positions[v]));
     const std::uint32_t end = std::min(stars.begin[v + 1], stars.begin[v] + kLookedAt);
     for (std::uint32_t s = stars.begin[v]; s < end && least > enough2; ++s) {
         const Triangle& t = mesh.triangles[stars.triangles[s]];
-        least = std::min(least, distance2_to_triangle(p, to_double(mesh.positions[t[0]]), to_double(mesh.positions[t[1]]), to_double(mesh.positions[t[2]])));
+        least = std::min(
+            least, distance2_to_triangle(p, to_double(mesh.positions[t[0]]), to_double(mesh.positions[t[1]]),
+                                         to_double(mesh.positions[t[2]])));
     }
     return least;
 }
@@ -110,7 +121,9 @@ std::vector<std::uint32_t> ranks_along_curve(std::span<const Float3> positions) 
     std::vector<std::pair<std::uint32_t, std::uint32_t>> order(positions.size());
     for (std::uint32_t v = 0; v < order.size(); ++v) {
         const Double3 p = (to_double(positions[v]) - low) * scale;
-        order[v] = {spread(std::uint32_t(p.x)) | spread(std::uint32_t(p.y)) << 1 | spread(std::uint32_t(p.z)) << 2, v};
+        order[v] = {
+            spread(std::uint32_t(p.x)) | spread(std::uint32_t(p.y)) << 1 | spread(std::uint32_t(p.z)) << 2,
+            v};
     }
     tbb::parallel_sort(order.begin(), order.end());
     std::vector<std::uint32_t> ranks(positions.size());
@@ -130,31 +143,37 @@ class Calibrator {
 
     ProgressiveMesh release() { return live_.release(); }
 
-    /// The two-sided distance between a level and the full mesh, if it is more than about `enough`, and at most that otherwise.
+    /// The two-sided distance between a level and the full mesh, if it is more than about `enough`, and at
+    /// most that otherwise.
     double measure(std::size_t level, double enough) {
         enough2_ = enough * enough;
         live_.go_to(level);
         const Mesh coarse = arranged();
         const Stars stars(coarse);
-        // How far, squared, the two surfaces are around each of the level's vertices: where the samples on triangles should go.
+        // How far, squared, the two surfaces are around each of the level's vertices: where the samples on
+        // triangles should go.
         std::vector<float> apart(coarse.positions.size(), 0);
         const double forth = from_full(coarse, stars, apart);
         const double back = from_vertices(coarse, stars, apart);
         std::vector<float> apart_triangles(coarse.triangles.size(), 0);
-        const double centres = coarse.triangles.size() > kSamples / 6 ? from_centres(coarse, apart_triangles) : 0;
+        const double centres =
+            coarse.triangles.size() > kSamples / 6 ? from_centres(coarse, apart_triangles) : 0;
         return std::max({forth, back, centres, from_triangles(coarse, stars, apart, apart_triangles)});
     }
 
   private:
-    /// The current level with its vertices numbered along a Morton curve, as the full mesh's, and its triangles in their order: numbers in order of
-    /// birth are scattered in space, and every look around would miss the cache.
+    /// The current level with its vertices numbered along a Morton curve, as the full mesh's, and its
+    /// triangles in their order: numbers in order of birth are scattered in space, and every look around
+    /// would miss the cache.
     Mesh arranged() const {
         Mesh mesh;
         mesh.positions.resize(ranks_.size());
         const auto positions = live_.positions();
         for (std::size_t v = 0; v < positions.size(); ++v) mesh.positions[ranks_[v]] = positions[v];
         std::vector<std::uint32_t> place(ranks_.size() + 1, 0);
-        const auto ranked = [&](const Triangle& t) { return Triangle{ranks_[t[0]], ranks_[t[1]], ranks_[t[2]]}; };
+        const auto ranked = [&](const Triangle& t) {
+            return Triangle{ranks_[t[0]], ranks_[t[1]], ranks_[t[2]]};
+        };
         const auto first = [](const Triangle& t) { return std::min({t[0], t[1], t[2]}); };
         for (const Triangle& t : live_.triangles()) ++place[first(ranked(t)) + 1];
         std::partial_sum(place.begin(), place.end(), place.begin());
@@ -185,37 +204,52 @@ class Calibrator {
         bool orphans = false;
         const std::vector<std::uint32_t> ancestors = this->ancestors(orphans);
         const std::size_t vertices = live_.positions().size();
-        const std::size_t step = std::clamp<std::size_t>(full_.positions.size() / std::max<std::size_t>(8 * vertices, kDensePass), 1, 8);
+        const std::size_t step = std::clamp<std::size_t>(
+            full_.positions.size() / std::max<std::size_t>(8 * vertices, kDensePass), 1, 8);
         std::vector<Probe> probes((full_.positions.size() + step - 1) / step);
-        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, probes.size(), 4096), [&](const tbb::blocked_range<std::size_t>& range) {
-            for (std::size_t i = range.begin(); i < range.end(); ++i) {
-                const auto v = std::uint32_t(i * step);
-                const std::uint32_t ancestor = ancestors[v];
-                double bound2 = std::numeric_limits<double>::infinity();
-                if (ancestor != kNoVertex) bound2 = star_distance2(coarse, stars, ancestor, to_double(full_.positions[v]), enough2_);
-                probes[i] = {bound2, v};
-            }
-        });
+        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, probes.size(), 4096),
+                          [&](const tbb::blocked_range<std::size_t>& range) {
+                              for (std::size_t i = range.begin(); i < range.end(); ++i) {
+                                  const auto v = std::uint32_t(i * step);
+                                  const std::uint32_t ancestor = ancestors[v];
+                                  double bound2 = std::numeric_limits<double>::infinity();
+                                  if (ancestor != kNoVertex)
+                                      bound2 = star_distance2(coarse, stars, ancestor,
+                                                              to_double(full_.positions[v]), enough2_);
+                                  probes[i] = {bound2, v};
+                              }
+                          });
         for (const Probe& probe : probes)
-            if (const std::uint32_t a = ancestors[probe.index]; a != kNoVertex) apart[a] = std::max(apart[a], float(probe.bound2));
+            if (const std::uint32_t a = ancestors[probe.index]; a != kNoVertex)
+                apart[a] = std::max(apart[a], float(probe.bound2));
         std::optional<TriangleTree> tree;
         if (orphans || coarse.triangles.size() <= kTreeTriangles) tree.emplace(coarse);
         return farthest(probes, enough2_, [&](Probe& probe, double most) {
-            return tree ? tree->closest(to_double(full_.positions[probe.index]), TriangleTree::kNoGuess, most).distance2 : probe.bound2;
+            return tree ? tree->closest(to_double(full_.positions[probe.index]), TriangleTree::kNoGuess, most)
+                              .distance2
+                        : probe.bound2;
         });
     }
 
-    /// The level's vertices to the input. Each is still one of the input's, elsewhere: that one's star bounds the distance.
+    /// The level's vertices to the input. Each is still one of the input's, elsewhere: that one's star bounds
+    /// the distance.
     double from_vertices(const Mesh& coarse, const Stars& stars, std::vector<float>& apart) const {
         std::vector<Probe> probes(coarse.positions.size(), Probe{0, 0});
-        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, probes.size(), 4096), [&](const tbb::blocked_range<std::size_t>& range) {
-            for (std::size_t v = range.begin(); v < range.end(); ++v)
-                if (stars.begin[v] < stars.begin[v + 1]) probes[v] = {star_distance2(full_, full_stars_, std::uint32_t(v), to_double(coarse.positions[v]), enough2_), std::uint32_t(v)};
-        });
+        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, probes.size(), 4096),
+                          [&](const tbb::blocked_range<std::size_t>& range) {
+                              for (std::size_t v = range.begin(); v < range.end(); ++v)
+                                  if (stars.begin[v] < stars.begin[v + 1])
+                                      probes[v] = {star_distance2(full_, full_stars_, std::uint32_t(v),
+                                                                  to_double(coarse.positions[v]), enough2_),
+                                                   std::uint32_t(v)};
+                          });
         const double most = farthest(probes, enough2_, [&](Probe& probe, double least) {
-            return probe.bound2 = tree_->closest(to_double(coarse.positions[probe.index]), TriangleTree::kNoGuess, least).distance2;
+            return probe.bound2 =
+                       tree_->closest(to_double(coarse.positions[probe.index]), TriangleTree::kNoGuess, least)
+                           .distance2;
         });
-        for (const Probe& probe : probes) apart[probe.index] = std::max(apart[probe.index], float(probe.bound2));
+        for (const Probe& probe : probes)
+            apart[probe.index] = std::max(apart[probe.index], float(probe.bound2));
         return most;
     }
 
@@ -224,29 +258,34 @@ class Calibrator {
         std::vector<Probe> probes(coarse.triangles.size());
         const auto centre = [&](std::uint32_t t) {
             const Triangle& c = coarse.triangles[t];
-            return (to_double(coarse.positions[c[0]]) + to_double(coarse.positions[c[1]]) + to_double(coarse.positions[c[2]])) * (1.0 / 3);
+            return (to_double(coarse.positions[c[0]]) + to_double(coarse.positions[c[1]]) +
+                    to_double(coarse.positions[c[2]])) *
+                   (1.0 / 3);
         };
-        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, probes.size(), 4096), [&](const tbb::blocked_range<std::size_t>& range) {
-            for (std::size_t i = range.begin(); i < range.end(); ++i) {
-                const auto t = std::uint32_t(i);
-                const Double3 p = centre(t);
-                double bound2 = std::numeric_limits<double>::infinity();
-                for (const std::uint32_t v : coarse.triangles[t]) {
-                    bound2 = std::min(bound2, star_distance2(full_, full_stars_, v, p, enough2_));
-                    if (bound2 <= enough2_) break;
-                }
-                probes[i] = {bound2, t};
-            }
-        });
+        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, probes.size(), 4096),
+                          [&](const tbb::blocked_range<std::size_t>& range) {
+                              for (std::size_t i = range.begin(); i < range.end(); ++i) {
+                                  const auto t = std::uint32_t(i);
+                                  const Double3 p = centre(t);
+                                  double bound2 = std::numeric_limits<double>::infinity();
+                                  for (const std::uint32_t v : coarse.triangles[t]) {
+                                      bound2 = std::min(bound2,
+                                                        star_distance2(full_, full_stars_, v, p, enough2_));
+                                      if (bound2 <= enough2_) break;
+                                  }
+                                  probes[i] = {bound2, t};
+                              }
+                          });
         const double most = farthest(probes, enough2_, [&](Probe& probe, double least) {
-            return probe.bound2 = tree_->closest(centre(probe.index), TriangleTree::kNoGuess, least).distance2;
+            return probe.bound2 =
+                       tree_->closest(centre(probe.index), TriangleTree::kNoGuess, least).distance2;
         });
         for (const Probe& probe : probes) apart_triangles[probe.index] = float(probe.bound2);
         return most;
     }
 
-    /// Samples on the level's triangles to the input; of many triangles those where the surfaces are farthest apart, and those at boundaries,
-    /// which may reach beyond the input without any vertex being far.
+    /// Samples on the level's triangles to the input; of many triangles those where the surfaces are farthest
+    /// apart, and those at boundaries, which may reach beyond the input without any vertex being far.
     double from_triangles(const Mesh& coarse, const Stars& stars, const std::vector<float>& apart,
                           const std::vector<float>& apart_triangles) const {
         std::vector<Probe> triangles(coarse.triangles.size());
@@ -254,30 +293,38 @@ class Calibrator {
             const Triangle& c = coarse.triangles[t];
             double priority = double(std::max({apart[c[0]], apart[c[1]], apart[c[2]], apart_triangles[t]}));
             for (std::size_t k = 0; k < 3; ++k)
-                if (single(coarse, stars, c[k], c[(k + 1) % 3])) priority = std::numeric_limits<double>::infinity();
+                if (single(coarse, stars, c[k], c[(k + 1) % 3]))
+                    priority = std::numeric_limits<double>::infinity();
             triangles[t] = {priority, t};
         }
         // A grid of 1/n steps has (n + 1)(n + 2)/2 points.
-        const std::size_t per_triangle = std::clamp<std::size_t>(kSamples / std::max<std::size_t>(triangles.size(), 1), 6, 153);
+        const std::size_t per_triangle =
+            std::clamp<std::size_t>(kSamples / std::max<std::size_t>(triangles.size(), 1), 6, 153);
         const auto n = std::size_t((std::sqrt(8.0 * double(per_triangle) + 1) - 3) / 2);
         const std::size_t asked = std::min(triangles.size(), kSamples / 6);
         std::nth_element(triangles.begin(), triangles.begin() + std::ptrdiff_t(asked), triangles.end(),
-                         [](const Probe& a, const Probe& b) { return a.bound2 != b.bound2 ? a.bound2 > b.bound2 : a.index < b.index; });
+                         [](const Probe& a, const Probe& b) {
+                             return a.bound2 != b.bound2 ? a.bound2 > b.bound2 : a.index < b.index;
+                         });
         std::vector<double> farthest2(asked, 0);
-        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, asked, 256), [&](const tbb::blocked_range<std::size_t>& range) {
-            std::uint32_t guess = TriangleTree::kNoGuess;
-            for (std::size_t i = range.begin(); i < range.end(); ++i) {
-                const Triangle& t = coarse.triangles[triangles[i].index];
-                const Double3 a = to_double(coarse.positions[t[0]]), ab = to_double(coarse.positions[t[1]]) - a, ac = to_double(coarse.positions[t[2]]) - a;
-                for (std::size_t j = 0; j <= n; ++j)
-                    for (std::size_t k = 0; j + k <= n; ++k) {
-                        const auto hit = tree_->closest(a + ab * (double(j) / double(n)) + ac * (double(k) / double(n)), guess,
-                                                         std::max(enough2_, farthest2[i]));
-                        guess = hit.slot;
-                        farthest2[i] = std::max(farthest2[i], hit.distance2);
-                    }
-            }
-        });
+        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, asked, 256),
+                          [&](const tbb::blocked_range<std::size_t>& range) {
+                              std::uint32_t guess = TriangleTree::kNoGuess;
+                              for (std::size_t i = range.begin(); i < range.end(); ++i) {
+                                  const Triangle& t = coarse.triangles[triangles[i].index];
+                                  const Double3 a = to_double(coarse.positions[t[0]]),
+                                                ab = to_double(coarse.positions[t[1]]) - a,
+                                                ac = to_double(coarse.positions[t[2]]) - a;
+                                  for (std::size_t j = 0; j <= n; ++j)
+                                      for (std::size_t k = 0; j + k <= n; ++k) {
+                                          const auto hit = tree_->closest(
+                                              a + ab * (double(j) / double(n)) + ac * (double(k) / double(n)),
+                                              guess, std::max(enough2_, farthest2[i]));
+                                          guess = hit.slot;
+                                          farthest2[i] = std::max(farthest2[i], hit.distance2);
+                                      }
+                              }
+                          });
         return std::sqrt(farthest2.empty() ? 0 : *std::max_element(farthest2.begin(), farthest2.end()));
     }
 
@@ -295,7 +342,8 @@ bool calibrate_errors(ProgressiveMesh& mesh, const Progress& progress) {
     if (mesh.splits.empty() || mesh.triangles.empty()) return true;
     // Finest first, down to the base.
     std::vector<std::size_t> levels;
-    for (double count = 0.9 * double(mesh.triangles.size()); count > double(mesh.base_triangles); count *= kLevelRatio) {
+    for (double count = 0.9 * double(mesh.triangles.size()); count > double(mesh.base_triangles);
+         count *= kLevelRatio) {
         const std::size_t level = level_for_triangles(mesh, std::uint64_t(count));
         if (level > 0 && (levels.empty() || level < levels.back())) levels.push_back(level);
     }
@@ -306,14 +354,16 @@ bool calibrate_errors(ProgressiveMesh& mesh, const Progress& progress) {
     {
         Calibrator calibrator(std::move(mesh));
         for (const std::size_t level : levels) {
-            if (progress && !progress("measure errors", double(measured.size()) / double(levels.size()))) return false;
+            if (progress && !progress("measure errors", double(measured.size()) / double(levels.size())))
+                return false;
             // Coarser levels are no nearer: what is below the last result need not be known exactly.
             const double last = measured.empty() ? 0.0 : measured.back();
             measured.push_back(std::max(last, kSafety * calibrator.measure(level, 0.5 / kSafety * last)));
         }
         mesh = calibrator.release();
     }
-    // Between two measured levels the estimates say how the error grows: the larger of the two scales, within the two.
+    // Between two measured levels the estimates say how the error grows: the larger of the two scales, within
+    // the two.
     const auto scale_of = [&](std::size_t i) {
         const double estimate = double(mesh.splits[levels[i]].error);
         return estimate > 0 ? measured[i] / estimate : 0;
@@ -325,7 +375,8 @@ bool calibrate_errors(ProgressiveMesh& mesh, const Progress& progress) {
     for (std::size_t level = 0; level < mesh.splits.size(); ++level) {
         while (at > 0 && levels[at - 1] <= level) --at;
         const double scale = std::max(scales[at], at > 0 ? scales[at - 1] : 0.0);
-        const double wanted = std::max(scale * double(mesh.splits[level].error), kShareOfCoarser * measured[at]);
+        const double wanted =
+            std::max(scale * double(mesh.splits[level].error), kShareOfCoarser * measured[at]);
         const double bounded = std::clamp(wanted, at > 0 ? measured[at - 1] : 0.0, measured[at]);
         errors[level] = float(std::min(bounded, double(std::numeric_limits<float>::max())));
     }

@@ -9,9 +9,9 @@
 
 namespace vsplit::bake {
 
-/// Measures the two-sided distance to the full mesh at levels of ever fewer triangles, and rescales the recorded errors between
-/// them, so that the error of every level is at least what was measured, never grows with the level, and is 0 at the full one.
-/// False if `progress` asked to stop.
+/// Measures the two-sided distance to the full mesh at levels of ever fewer triangles, and rescales the
+/// recorded errors between them, so that the error of every level is at least what was measured, never grows
+/// with the level, and is 0 at the full one. False if `progress` asked to stop.
 bool calibrate_errors(ProgressiveMesh& mesh, const Progress& progress);
 
 }  // namespace vsplit::bake

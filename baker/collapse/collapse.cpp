@@ -19,16 +19,21 @@ double cpu_seconds() {
 }  // namespace
 
 Result<CollapseResult> collapse(const Mesh& mesh, const CollapseOptions& options, const Progress& progress) {
-    const auto refuse = [](std::string message) { return Error{ErrorCode::kArgument, std::move(message), Error::kNowhere, 0}; };
+    const auto refuse = [](std::string message) {
+        return Error{ErrorCode::kArgument, std::move(message), Error::kNowhere, 0};
+    };
     if (const char* fault = mesh_fault(mesh)) return refuse(std::string("unsound mesh: ") + fault);
     if (mesh.triangles.size() > (std::size_t{1} << 30) || mesh.positions.size() > (std::size_t{1} << 30))
         return Error{ErrorCode::kLimit, "more than 2^30 triangles or vertices", Error::kNowhere, 0};
-    const auto within = [](double value, double least, double most) { return value >= least && value <= most; };
+    const auto within = [](double value, double least, double most) {
+        return value >= least && value <= most;
+    };
     if (!within(options.boundary_weight, 0, 1e6)) return refuse("boundary_weight must be 0 to 1e6");
     if (!within(options.volume_weight, 0, 1e6)) return refuse("volume_weight must be 0 to 1e6");
     if (!within(options.regularisation, 1e-12, 1)) return refuse("regularisation must be 1e-12 to 1");
     if (!within(options.deviation_limit, 0, 1e9)) return refuse("deviation_limit must be 0 to 1e9");
-    if (!within(options.lock_features_degrees, 0, 180)) return refuse("lock_features_degrees must be 0 to 180");
+    if (!within(options.lock_features_degrees, 0, 180))
+        return refuse("lock_features_degrees must be 0 to 180");
     if (!within(options.min_normal_cosine, -1, 1)) return refuse("min_normal_cosine must be -1 to 1");
     if (!within(options.min_quality, 0, 1)) return refuse("min_quality must be 0 to 1");
     const Error cancelled{ErrorCode::kCancelled, "cancelled", Error::kNowhere, 0};

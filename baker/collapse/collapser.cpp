@@ -18,6 +18,8 @@ namespace {
 /// it. It shrinks as they go.
 constexpr std::size_t kHub = 1000;
 
+constexpr double kPaperCosine = 0.6;
+
 double seconds_now() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
@@ -55,7 +57,10 @@ Collapser::Collapser(const Mesh& mesh, const CollapseOptions& options)
       guards_(mesh_),
       queue_(mesh_.vertex_count() + std::size_t{components_.count()}),
       record_(!mesh.weights.empty()),
-      strictness_{options.min_normal_cosine, options.min_quality, 60, true},
+      // Cost `paper` has no limit on the deviation that would hold back what turns a triangle far.
+      strictness_{options.cost == Cost::kPaper ? std::max(options.min_normal_cosine, kPaperCosine)
+                                               : options.min_normal_cosine,
+                  options.min_quality, 60, true},
       histories_(mesh_.vertex_count()),
       targets_(mesh_.vertex_count()) {
     unused_vertices_ = mesh_.vertex_count() - mesh_.live_vertices();

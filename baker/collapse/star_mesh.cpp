@@ -157,8 +157,8 @@ void StarMesh::classify() {
                 if (connected) vertices_[v].kind = special == 0 ? VertexKind::kInner : VertexKind::kCurve;
             }
         });
-    live_vertices_ = static_cast<std::uint32_t>(
-        std::count_if(vertices_.begin(), vertices_.end(), [](const Vertex& v) { return v.kind != VertexKind::kDead; }));
+    live_vertices_ = static_cast<std::uint32_t>(std::count_if(
+        vertices_.begin(), vertices_.end(), [](const Vertex& v) { return v.kind != VertexKind::kDead; }));
 }
 
 void StarMesh::fold(std::uint32_t child, std::uint32_t parent, std::vector<std::uint32_t>& corners_changed,
@@ -205,7 +205,7 @@ void StarMesh::fold(std::uint32_t child, std::uint32_t parent, std::vector<std::
         for (const std::uint32_t w : triangles_[t])
             if (w != child && w != parent) {
                 auto* begin = arena_.data() + vertices_[w].star_begin;
-                                auto* at = std::find(begin, begin + vertices_[w].star_size, t);
+                auto* at = std::find(begin, begin + vertices_[w].star_size, t);
                 *at = begin[--vertices_[w].star_size];
             }
     live_triangles_ -= static_cast<std::uint32_t>(gone.size());

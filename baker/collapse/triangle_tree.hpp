@@ -28,8 +28,9 @@ class TriangleTree {
     /// `mesh` has a triangle, its corners exist and are finite. Runs on the calling thread alone.
     explicit TriangleTree(const Mesh& mesh);
 
-    /// The closest triangle; of several at the same distance any, but always the same for the same guess. A guess (Hit::slot of a point
-    /// nearby) only makes it faster. A triangle within `enough2` (squared) is good enough: the first found is returned.
+    /// The closest triangle; of several at the same distance any, but always the same for the same guess. A
+    /// guess (Hit::slot of a point nearby) only makes it faster. A triangle within `enough2` (squared) is
+    /// good enough: the first found is returned.
     Hit closest(Double3 point, std::uint32_t guess = kNoGuess, double enough2 = 0) const;
 
   private:

@@ -27,7 +27,8 @@ struct FileDescriptor {
 
 bool write_all(int fd, std::span<const std::byte> bytes) {
     while (!bytes.empty()) {
-        const ssize_t n = ::write(fd, bytes.data(), std::min<std::size_t>(bytes.size(), std::size_t{1} << 30));
+        const ssize_t n =
+            ::write(fd, bytes.data(), std::min<std::size_t>(bytes.size(), std::size_t{1} << 30));
         if (n < 0) {
             if (errno == EINTR) continue;
             return false;
@@ -44,7 +45,8 @@ Result<std::vector<std::byte>> read_file(const std::string& path, std::uint64_t 
     if (file.fd < 0) return io_error("open");
     struct stat info {};
     if (::fstat(file.fd, &info) != 0) return io_error("read");
-    if (S_ISDIR(info.st_mode)) return Error{ErrorCode::kIo, "cannot read: it is a folder", Error::kNowhere, 0};
+    if (S_ISDIR(info.st_mode))
+        return Error{ErrorCode::kIo, "cannot read: it is a folder", Error::kNowhere, 0};
     std::vector<std::byte> bytes;
     const auto announced = S_ISREG(info.st_mode) ? static_cast<std::uint64_t>(info.st_size) : 0;
     const auto too_long = [&] {
@@ -57,7 +59,8 @@ Result<std::vector<std::byte>> read_file(const std::string& path, std::uint64_t 
     std::size_t size = 0;
     for (;;) {
         if (size == bytes.size()) bytes.resize(bytes.size() + std::max<std::size_t>(bytes.size() / 2, 65536));
-        const ssize_t n = ::read(file.fd, bytes.data() + size, std::min<std::size_t>(bytes.size() - size, std::size_t{1} << 30));
+        const ssize_t n = ::read(file.fd, bytes.data() + size,
+                                 std::min<std::size_t>(bytes.size() - size, std::size_t{1} << 30));
         if (n < 0) {
             if (errno == EINTR) continue;
             return io_error("read");
@@ -73,14 +76,16 @@ Result<std::vector<std::byte>> read_file(const std::string& path, std::uint64_t 
 Status write_file(const std::string& path, std::span<const std::byte> bytes, bool overwrite) {
     struct stat info {};
     if (::stat(path.c_str(), &info) == 0) {
-        if (S_ISDIR(info.st_mode)) return Error{ErrorCode::kIo, "cannot write: it is a folder", Error::kNowhere, 0};
+        if (S_ISDIR(info.st_mode))
+            return Error{ErrorCode::kIo, "cannot write: it is a folder", Error::kNowhere, 0};
         if (!S_ISREG(info.st_mode)) {
             FileDescriptor file{::open(path.c_str(), O_WRONLY | O_CLOEXEC)};
             if (file.fd < 0 || !write_all(file.fd, bytes)) return io_error("write");
             return Ok{};
         }
         if (!overwrite)
-            return Error{ErrorCode::kExists, "exists already; pass --force to overwrite it", Error::kNowhere, 0};
+            return Error{ErrorCode::kExists, "exists already; pass --force to overwrite it", Error::kNowhere,
+                         0};
     }
     std::string temporary = path + ".XXXXXX.tmp";
     FileDescriptor file{::mkstemps(temporary.data(), 4)};

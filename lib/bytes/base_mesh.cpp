@@ -19,14 +19,17 @@ int add_attribute(draco::Mesh& mesh, draco::GeometryAttribute::Type type, const 
     attribute.Init(type, nullptr, kComponents, draco::DT_FLOAT32, false, kComponents * sizeof(float), 0);
     const int id = mesh.AddAttribute(attribute, true, mesh.num_points());
     for (std::uint32_t i = 0; i < mesh.num_points(); ++i)
-        mesh.attribute(id)->SetAttributeValue(draco::AttributeValueIndex(i), values + std::size_t{kComponents} * i);
+        mesh.attribute(id)->SetAttributeValue(draco::AttributeValueIndex(i),
+                                              values + std::size_t{kComponents} * i);
     return id;
 }
 
 template <int kComponents>
 bool read_attribute(const draco::Mesh& mesh, draco::GeometryAttribute::Type type, float* values) {
     const draco::PointAttribute* attribute = mesh.GetNamedAttribute(type);
-    if (!attribute || attribute->num_components() != kComponents || attribute->data_type() != draco::DT_FLOAT32) return false;
+    if (!attribute || attribute->num_components() != kComponents ||
+        attribute->data_type() != draco::DT_FLOAT32)
+        return false;
     for (std::uint32_t i = 0; i < mesh.num_points(); ++i) {
         const draco::AttributeValueIndex at = attribute->mapped_index(draco::PointIndex(i));
         if (at.value() >= attribute->size()) return false;
@@ -37,14 +40,16 @@ bool read_attribute(const draco::Mesh& mesh, draco::GeometryAttribute::Type type
 
 /// Draco knows no mesh without a triangle: its floats as they are, positions, then weights.
 std::vector<std::byte> encode_points(const Mesh& base) {
-    const auto positions = std::as_bytes(std::span(base.positions)), weights = std::as_bytes(std::span(base.weights));
+    const auto positions = std::as_bytes(std::span(base.positions)),
+               weights = std::as_bytes(std::span(base.weights));
     std::vector<std::byte> bytes(positions.begin(), positions.end());
     bytes.insert(bytes.end(), weights.begin(), weights.end());
     return bytes;
 }
 
 bool decode_points(std::span<const std::byte> bytes, std::uint32_t vertices, bool has_weights, Mesh& base) {
-    const std::size_t positions = std::size_t{vertices} * sizeof(Float3), weights = has_weights ? std::size_t{vertices} * sizeof(float) : 0;
+    const std::size_t positions = std::size_t{vertices} * sizeof(Float3),
+                      weights = has_weights ? std::size_t{vertices} * sizeof(float) : 0;
     if (bytes.size() != positions + weights) return false;
     base.positions.resize(vertices);
     base.weights.resize(has_weights ? vertices : 0);
@@ -73,18 +78,21 @@ Result<std::vector<std::byte>> encode_base(const Mesh& base) {
     encoder.SetSpeedOptions(0, 0);
     draco::EncoderBuffer buffer;
     if (const draco::Status status = encoder.EncodeMeshToBuffer(mesh, &buffer); !status.ok())
-        return Error{ErrorCode::kMalformed, "Draco cannot encode the base mesh: " + status.error_msg_string(), Error::kNowhere, 0};
+        return Error{ErrorCode::kMalformed, "Draco cannot encode the base mesh: " + status.error_msg_string(),
+                     Error::kNowhere, 0};
     const auto* data = reinterpret_cast<const std::byte*>(buffer.data());
     return std::vector<std::byte>(data, data + buffer.size());
 }
 
-Result<Mesh> decode_base(std::span<const std::byte> bytes, std::uint32_t vertices, std::uint32_t triangles, bool has_weights) {
+Result<Mesh> decode_base(std::span<const std::byte> bytes, std::uint32_t vertices, std::uint32_t triangles,
+                         bool has_weights) {
     const auto malformed = [](std::string message) {
         return Error{ErrorCode::kMalformed, std::move(message), Error::kNowhere, 0};
     };
     if (triangles == 0) {
         Mesh points;
-        if (!decode_points(bytes, vertices, has_weights, points)) return malformed("the base mesh has other bytes than its points need");
+        if (!decode_points(bytes, vertices, has_weights, points))
+            return malformed("the base mesh has other bytes than its points need");
         return points;
     }
     if (vertices == 0) return malformed("the base mesh has triangles but no vertices");
@@ -92,7 +100,8 @@ Result<Mesh> decode_base(std::span<const std::byte> bytes, std::uint32_t vertice
     buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     draco::Decoder decoder;
     auto decoded = decoder.DecodeMeshFromBuffer(&buffer);
-    if (!decoded.ok()) return malformed("Draco cannot decode the base mesh: " + decoded.status().error_msg_string());
+    if (!decoded.ok())
+        return malformed("Draco cannot decode the base mesh: " + decoded.status().error_msg_string());
     const std::unique_ptr<draco::Mesh> source = std::move(decoded).value();
     if (source->num_points() != vertices || source->num_faces() != triangles)
         return malformed("the base mesh has other counts than the header announces");
@@ -107,7 +116,8 @@ Result<Mesh> decode_base(std::span<const std::byte> bytes, std::uint32_t vertice
             return malformed("the base mesh has no float weights");
     }
     for (std::uint32_t t = 0; t < triangles; ++t)
-        for (std::size_t k = 0; k < 3; ++k) mesh.triangles[t][k] = source->face(draco::FaceIndex(t))[k].value();
+        for (std::size_t k = 0; k < 3; ++k)
+            mesh.triangles[t][k] = source->face(draco::FaceIndex(t))[k].value();
     return mesh;
 }
 

@@ -13,10 +13,12 @@
 
 namespace vsplit {
 
-/// Draco's sequential coding without quantisation: order and floats come back exactly. A mesh without triangles is its plain floats.
+/// Draco's sequential coding without quantisation: order and floats come back exactly. A mesh without
+/// triangles is its plain floats.
 Result<std::vector<std::byte>> encode_base(const Mesh& base);
 
 /// `vertices`, `triangles` and `has_weights` are what the header announces; anything else is kMalformed.
-Result<Mesh> decode_base(std::span<const std::byte> bytes, std::uint32_t vertices, std::uint32_t triangles, bool has_weights);
+Result<Mesh> decode_base(std::span<const std::byte> bytes, std::uint32_t vertices, std::uint32_t triangles,
+                         bool has_weights);
 
 }  // namespace vsplit

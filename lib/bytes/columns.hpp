@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The vsplit authors
 // SPDX-License-Identifier: MIT
 //
-// The columns that a block of splits is stored in: variable-length integers and floats as differences of ordered integers.
+// The columns that a block of splits is stored in: variable-length integers and floats as differences of
+// ordered integers.
 #pragma once
 
 #include <array>
@@ -36,7 +37,8 @@ enum class Column : std::uint8_t {
 };
 inline constexpr std::size_t kColumnCount = 17;
 
-/// Differences of neighbours in the order of the reals are small numbers: a float as an integer of the same order.
+/// Differences of neighbours in the order of the reals are small numbers: a float as an integer of the same
+/// order.
 inline std::uint32_t ordered_bits(float value) {
     const auto bits = std::bit_cast<std::uint32_t>(value);
     return (bits & 0x80000000u) ? ~bits : bits | 0x80000000u;
@@ -48,7 +50,9 @@ inline float from_ordered_bits(std::uint32_t bits) {
 inline std::uint32_t zigzag(std::uint32_t difference) {
     return (difference << 1) ^ (0u - (difference >> 31));
 }
-inline std::uint32_t unzigzag(std::uint32_t code) { return (code >> 1) ^ (0u - (code & 1)); }
+inline std::uint32_t unzigzag(std::uint32_t code) {
+    return (code >> 1) ^ (0u - (code & 1));
+}
 
 /// Unsigned LEB128, at most five bytes.
 inline void put_varint(std::vector<std::byte>& out, std::uint32_t value) {

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The vsplit authors
 // SPDX-License-Identifier: MIT
 //
-// Where things are in a .pmesh file of version 0 (formats/spec/pmesh-0.md), and the little-endian numbers in it.
+// Where things are in a .pmesh file of version 0 (formats/spec/pmesh-0.md), and the little-endian numbers in
+// it.
 #pragma once
 
 #include <algorithm>

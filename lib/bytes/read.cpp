@@ -15,9 +15,12 @@
 namespace vsplit {
 namespace {
 
-Error at(std::uint64_t offset, ErrorCode code, std::string message) { return {code, std::move(message), offset, 0}; }
+Error at(std::uint64_t offset, ErrorCode code, std::string message) {
+    return {code, std::move(message), offset, 0};
+}
 
-/// Turns the columns of a block back into splits, appended to a mesh whose arrays have room for all that the header announces.
+/// Turns the columns of a block back into splits, appended to a mesh whose arrays have room for all that the
+/// header announces.
 class BlockDecoder {
   public:
     BlockDecoder(ProgressiveMesh& mesh, const FileInfo& info) : mesh_(mesh), info_(info) {
@@ -56,18 +59,21 @@ class BlockDecoder {
     }
     Float3 next_position(Column x, const Float3& predicted) {
         const auto first = static_cast<std::uint8_t>(x);
-        return {next_float(static_cast<Column>(first), predicted.x), next_float(static_cast<Column>(first + 1), predicted.y),
+        return {next_float(static_cast<Column>(first), predicted.x),
+                next_float(static_cast<Column>(first + 1), predicted.y),
                 next_float(static_cast<Column>(first + 2), predicted.z)};
     }
 
     const char* split(const BlockInfo& block) {
         const std::uint32_t vertices = next(Column::kNewVertices), triangles = next(Column::kNewTriangles),
                             corners = next(Column::kCornerCount), moves = next(Column::kMoveCount);
-        if (vertices > block.vertices_end - end_.vertices_end || triangles > block.triangles_end - end_.triangles_end ||
+        if (vertices > block.vertices_end - end_.vertices_end ||
+            triangles > block.triangles_end - end_.triangles_end ||
             corners > block.corners_end - end_.corners_end || moves > block.moves_end - end_.moves_end)
             return "a split has more parts than its block announces";
         const std::uint32_t first = end_.vertices_end;
-        Split split{first + vertices, end_.triangles_end + triangles, end_.corners_end + corners, end_.moves_end + moves, 0};
+        Split split{first + vertices, end_.triangles_end + triangles, end_.corners_end + corners,
+                    end_.moves_end + moves, 0};
         error_bits_ -= next(Column::kErrors);
         split.error = std::bit_cast<float>(error_bits_);
 
@@ -81,7 +87,8 @@ class BlockDecoder {
             place = next_position(Column::kBirthX, place);
             mesh_.positions.push_back(place);
             if (info_.has_weights)
-                mesh_.weights.push_back(next_float(Column::kWeights, parent == kNoVertex ? 1.0f : current_weights_[parent]));
+                mesh_.weights.push_back(
+                    next_float(Column::kWeights, parent == kNoVertex ? 1.0f : current_weights_[parent]));
         }
         const std::uint32_t parent = vertices > 0 ? mesh_.parents[first] : kNoVertex;
         for (std::uint32_t i = 0; i < moves; ++i) {
@@ -98,7 +105,9 @@ class BlockDecoder {
             if (info_.has_weights) current_weights_[move.vertex] = move.weight;
         }
         current_.insert(current_.end(), mesh_.positions.begin() + first, mesh_.positions.end());
-        if (info_.has_weights) current_weights_.insert(current_weights_.end(), mesh_.weights.begin() + first, mesh_.weights.end());
+        if (info_.has_weights)
+            current_weights_.insert(current_weights_.end(), mesh_.weights.begin() + first,
+                                    mesh_.weights.end());
         std::uint32_t corner = 3 * end_.triangles_end;
         for (std::uint32_t i = 0; i < corners; ++i) {
             corner -= unzigzag(next(Column::kCorners));
@@ -142,7 +151,8 @@ std::uint64_t memory_needed(const FileInfo& info) {
     const std::uint64_t vertex = (info.has_weights ? 4 : 0) + sizeof(Float3) + sizeof(std::uint32_t);
     const std::uint64_t current = (info.has_weights ? 4 : 0) + sizeof(Float3);
     return info.vertices * (vertex + current) + std::uint64_t{info.triangles} * 2 * sizeof(Triangle) +
-           std::uint64_t{info.splits} * sizeof(Split) + std::uint64_t{info.corner_changes} * sizeof(CornerChange) +
+           std::uint64_t{info.splits} * sizeof(Split) +
+           std::uint64_t{info.corner_changes} * sizeof(CornerChange) +
            std::uint64_t{info.moves} * sizeof(VertexMove) + largest_block;
 }
 
@@ -162,37 +172,47 @@ const char* table_fault(const FileInfo& info, std::uint64_t& offset) {
             block.triangles_end < before.triangles_end || block.corners_end < before.corners_end ||
             block.moves_end < before.moves_end)
             return "a block's counts do not grow";
-        // Every part costs at least a byte of its columns; so no count can exceed what the block's bytes can hold.
-        const std::uint64_t parts = std::uint64_t{block.splits_end - before.splits_end} + (block.vertices_end - before.vertices_end) +
-                                    (block.triangles_end - before.triangles_end) + (block.corners_end - before.corners_end) +
-                                    (block.moves_end - before.moves_end);
+        // Every part costs at least a byte of its columns; so no count can exceed what the block's bytes can
+        // hold.
+        const std::uint64_t parts =
+            std::uint64_t{block.splits_end - before.splits_end} + (block.vertices_end - before.vertices_end) +
+            (block.triangles_end - before.triangles_end) + (block.corners_end - before.corners_end) +
+            (block.moves_end - before.moves_end);
         if (parts > block.raw_bytes) return "a block announces more parts than its bytes can hold";
         // zstd's strongest possible packing: a run of 128 KiB in a block of three bytes.
-        if (block.raw_bytes > std::uint64_t{block.bytes} * 65536) return "a block announces more bytes than it can unpack to";
-        if (!(block.error >= 0) || !(block.error <= before.error)) return "a block's error is negative or grows";
+        if (block.raw_bytes > std::uint64_t{block.bytes} * 65536)
+            return "a block announces more bytes than it can unpack to";
+        if (!(block.error >= 0) || !(block.error <= before.error))
+            return "a block's error is negative or grows";
         place += block.bytes;
         before = block;
     }
     offset = 16;
     if (place != info.file_bytes) return "the last block does not end where the file does";
     offset = 28;
-    if (before.splits_end != info.splits || before.vertices_end != info.vertices || before.triangles_end != info.triangles ||
-        before.corners_end != info.corner_changes || before.moves_end != info.moves)
+    if (before.splits_end != info.splits || before.vertices_end != info.vertices ||
+        before.triangles_end != info.triangles || before.corners_end != info.corner_changes ||
+        before.moves_end != info.moves)
         return "the table does not end at the counts of the header";
     return nullptr;
 }
 
-/// The reason if the header or the table announces other errors or bounds than the mesh has; `offset` is then where.
-const char* announcement_fault(const FileInfo& info, const ProgressiveMesh& mesh, std::span<const Float3> full, std::uint64_t& offset) {
+/// The reason if the header or the table announces other errors or bounds than the mesh has; `offset` is then
+/// where.
+const char* announcement_fault(const FileInfo& info, const ProgressiveMesh& mesh,
+                               std::span<const Float3> full, std::uint64_t& offset) {
     offset = 92;
-    if (double(info.base_error) != error_at(mesh, 0)) return "the base mesh has another error than the header announces";
+    if (double(info.base_error) != error_at(mesh, 0))
+        return "the base mesh has another error than the header announces";
     for (std::size_t i = 0; i < info.blocks.size(); ++i) {
         offset = kHeaderBytes + kTableEntryBytes * i + 44;
-        if (double(info.blocks[i].error) != error_at(mesh, info.blocks[i].splits_end)) return "a block ends at another error than the table announces";
+        if (double(info.blocks[i].error) != error_at(mesh, info.blocks[i].splits_end))
+            return "a block ends at another error than the table announces";
     }
     offset = 56;
     const Bounds bounds = bounds_of(full);
-    if (bounds.low != info.bounds_min || bounds.high != info.bounds_max) return "the mesh has other bounds than the header announces";
+    if (bounds.low != info.bounds_min || bounds.high != info.bounds_max)
+        return "the mesh has other bounds than the header announces";
     return nullptr;
 }
 
@@ -200,15 +220,18 @@ const char* announcement_fault(const FileInfo& info, const ProgressiveMesh& mesh
 
 Result<FileInfo> read_info(std::span<const std::byte> bytes, const Limits& limits) {
     const std::size_t magic = std::min(bytes.size(), kMagic.size());
-    if (magic == 0 || !std::equal(kMagic.begin(), kMagic.begin() + magic, bytes.begin(),
-                                  [](unsigned char a, std::byte b) { return a == static_cast<unsigned char>(b); }))
+    if (magic == 0 ||
+        !std::equal(kMagic.begin(), kMagic.begin() + magic, bytes.begin(),
+                    [](unsigned char a, std::byte b) { return a == static_cast<unsigned char>(b); }))
         return at(0, ErrorCode::kMalformed, "not a .pmesh file");
     if (bytes.size() < kHeaderBytes)
         return at(bytes.size(), ErrorCode::kTruncated, "the file ends within its header of 120 bytes");
     FileInfo info;
     info.version = get<std::uint32_t>(bytes, 8);
     if (info.version != kVersion)
-        return at(8, ErrorCode::kUnsupported, "version " + std::to_string(info.version) + " of the format; this is a reader of version 0");
+        return at(
+            8, ErrorCode::kUnsupported,
+            "version " + std::to_string(info.version) + " of the format; this is a reader of version 0");
     if (get<std::uint64_t>(bytes, kHeaderChecksumAt) != checksum64(bytes.first(kHeaderChecksumAt)))
         return at(kHeaderChecksumAt, ErrorCode::kChecksum, "the header's checksum does not match");
     const auto flags = get<std::uint32_t>(bytes, 12);
@@ -231,13 +254,16 @@ Result<FileInfo> read_info(std::span<const std::byte> bytes, const Limits& limit
     info.base_checksum = get<std::uint64_t>(bytes, 96);
     info.data_offset = kHeaderBytes + kTableEntryBytes * block_count;
     if (info.base_offset != info.data_offset || info.base_offset + info.base_bytes > info.file_bytes)
-        return at(80, ErrorCode::kMalformed, "the base mesh is not between the table and the end of the file");
-    if (info.base_vertices > info.vertices || info.base_triangles > info.triangles || info.vertices >= kNoVertex / 4 ||
-        info.triangles >= kNoVertex / 4)
+        return at(80, ErrorCode::kMalformed,
+                  "the base mesh is not between the table and the end of the file");
+    if (info.base_vertices > info.vertices || info.base_triangles > info.triangles ||
+        info.vertices >= kNoVertex / 4 || info.triangles >= kNoVertex / 4)
         return at(28, ErrorCode::kMalformed, "the counts contradict each other");
-    if (!(info.base_error >= 0)) return at(92, ErrorCode::kMalformed, "the base mesh's error is negative or not a number");
+    if (!(info.base_error >= 0))
+        return at(92, ErrorCode::kMalformed, "the base mesh's error is negative or not a number");
     if (bytes.size() < info.data_offset)
-        return at(bytes.size(), ErrorCode::kTruncated, "the file ends within its table of " + std::to_string(block_count) + " blocks");
+        return at(bytes.size(), ErrorCode::kTruncated,
+                  "the file ends within its table of " + std::to_string(block_count) + " blocks");
     const auto table = bytes.subspan(kHeaderBytes, info.data_offset - kHeaderBytes);
     if (get<std::uint64_t>(bytes, kTableChecksumAt) != checksum64(table))
         return at(kTableChecksumAt, ErrorCode::kChecksum, "the table's checksum does not match");
@@ -260,7 +286,8 @@ Result<FileInfo> read_info(std::span<const std::byte> bytes, const Limits& limit
     if (const char* fault = table_fault(info, offset)) return at(offset, ErrorCode::kMalformed, fault);
     if (const std::uint64_t needed = memory_needed(info); needed > limits.max_bytes)
         return at(28, ErrorCode::kLimit,
-                  "the mesh needs " + std::to_string(needed) + " bytes, the limit is " + std::to_string(limits.max_bytes));
+                  "the mesh needs " + std::to_string(needed) + " bytes, the limit is " +
+                      std::to_string(limits.max_bytes));
     return info;
 }
 
@@ -303,17 +330,21 @@ Result<ProgressiveMesh> read_progressive_mesh(std::span<const std::byte> bytes, 
         const auto in_block = [&](ErrorCode code, const std::string& message) {
             return at(block.offset, code, "block " + std::to_string(i) + ": " + message);
         };
-        if (checksum64(stored) != block.checksum) return in_block(ErrorCode::kChecksum, "its checksum does not match");
+        if (checksum64(stored) != block.checksum)
+            return in_block(ErrorCode::kChecksum, "its checksum does not match");
         if (ZSTD_getFrameContentSize(stored.data(), stored.size()) != block.raw_bytes)
             return in_block(ErrorCode::kMalformed, "its zstd frame announces another size than the table");
         raw.resize(block.raw_bytes);
         const std::size_t size = ZSTD_decompress(raw.data(), raw.size(), stored.data(), stored.size());
-        if (ZSTD_isError(size) || size != block.raw_bytes) return in_block(ErrorCode::kMalformed, "its zstd frame does not unpack");
+        if (ZSTD_isError(size) || size != block.raw_bytes)
+            return in_block(ErrorCode::kMalformed, "its zstd frame does not unpack");
         if (const char* fault = decoder.decode(raw, block)) return in_block(ErrorCode::kMalformed, fault);
     }
     std::uint64_t offset = 0;
-    if (const char* fault = announcement_fault(info, mesh, decoder.positions(), offset)) return at(offset, ErrorCode::kMalformed, fault);
-    if (const char* fault = progressive_mesh_fault(mesh)) return at(info.base_offset, ErrorCode::kMalformed, fault);
+    if (const char* fault = announcement_fault(info, mesh, decoder.positions(), offset))
+        return at(offset, ErrorCode::kMalformed, fault);
+    if (const char* fault = progressive_mesh_fault(mesh))
+        return at(info.base_offset, ErrorCode::kMalformed, fault);
     return mesh;
 }
 

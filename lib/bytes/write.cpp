@@ -23,10 +23,12 @@ struct Block {
     std::size_t splits_end = 0;
 };
 
-/// Replays the splits, as the reader will, and turns them into columns: what is predicted from the state costs little.
+/// Replays the splits, as the reader will, and turns them into columns: what is predicted from the state
+/// costs little.
 class BlockEncoder {
   public:
-    explicit BlockEncoder(const ProgressiveMesh& mesh) : mesh_(mesh), positions_(mesh.positions), weights_(mesh.weights) {
+    explicit BlockEncoder(const ProgressiveMesh& mesh)
+        : mesh_(mesh), positions_(mesh.positions), weights_(mesh.weights) {
         end_.vertices_end = mesh.base_vertices;
         end_.triangles_end = mesh.base_triangles;
     }
@@ -39,7 +41,8 @@ class BlockEncoder {
         while (at_ < mesh_.splits.size() && (at_ == first || size() < raw_target)) add(mesh_.splits[at_++]);
         ByteWriter raw;
         for (const auto& column : columns_) raw.put(static_cast<std::uint32_t>(column.size()));
-        for (const auto& column : columns_) raw.bytes().insert(raw.bytes().end(), column.begin(), column.end());
+        for (const auto& column : columns_)
+            raw.bytes().insert(raw.bytes().end(), column.begin(), column.end());
         return std::move(raw.bytes());
     }
     std::size_t at() const { return at_; }
@@ -71,7 +74,8 @@ class BlockEncoder {
         put(Column::kErrors, error_bits_ - std::bit_cast<std::uint32_t>(split.error));
         error_bits_ = std::bit_cast<std::uint32_t>(split.error);
 
-        const std::uint32_t parent = split.vertices_end > end_.vertices_end ? mesh_.parents[end_.vertices_end] : kNoVertex;
+        const std::uint32_t parent =
+            split.vertices_end > end_.vertices_end ? mesh_.parents[end_.vertices_end] : kNoVertex;
         Float3 place;
         for (std::uint32_t v = end_.vertices_end; v < split.vertices_end; ++v) {
             const std::uint32_t p = mesh_.parents[v];
@@ -79,7 +83,8 @@ class BlockEncoder {
             if (p != kNoVertex) place = positions_[p];
             put_position(Column::kBirthX, mesh_.positions[v], place);
             place = mesh_.positions[v];
-            if (!weights_.empty()) put_float(Column::kWeights, mesh_.weights[v], p == kNoVertex ? 1.0f : weights_[p]);
+            if (!weights_.empty())
+                put_float(Column::kWeights, mesh_.weights[v], p == kNoVertex ? 1.0f : weights_[p]);
         }
         for (std::uint32_t i = end_.moves_end; i < split.moves_end; ++i) {
             const VertexMove& move = mesh_.moves[i];
@@ -95,7 +100,8 @@ class BlockEncoder {
             put(Column::kCornerVertices, change.vertex - end_.vertices_end);
         }
         for (std::uint32_t t = end_.triangles_end; t < split.triangles_end; ++t)
-            for (const std::uint32_t v : mesh_.triangles[t]) put(Column::kTriangles, split.vertices_end - 1 - v);
+            for (const std::uint32_t v : mesh_.triangles[t])
+                put(Column::kTriangles, split.vertices_end - 1 - v);
         for (std::uint32_t i = end_.moves_end; i < split.moves_end; ++i) {
             const VertexMove& move = mesh_.moves[i];
             positions_[move.vertex] = move.position;
@@ -113,24 +119,30 @@ class BlockEncoder {
     std::uint32_t error_bits_ = 0;
 };
 
-Error cannot(std::string message) { return {ErrorCode::kArgument, std::move(message), Error::kNowhere, 0}; }
+Error cannot(std::string message) {
+    return {ErrorCode::kArgument, std::move(message), Error::kNowhere, 0};
+}
 
 }  // namespace
 
-Result<std::vector<std::byte>> write_progressive_mesh(const ProgressiveMesh& mesh, const WriteOptions& options) {
-    if (options.block_bytes < 1024 || options.block_bytes > (1u << 24)) return cannot("block_bytes must be 1 KiB to 16 MiB");
+Result<std::vector<std::byte>> write_progressive_mesh(const ProgressiveMesh& mesh,
+                                                      const WriteOptions& options) {
+    if (options.block_bytes < 1024 || options.block_bytes > (1u << 24))
+        return cannot("block_bytes must be 1 KiB to 16 MiB");
     if (options.zstd_level < 1 || options.zstd_level > 19) return cannot("zstd_level must be 1 to 19");
-    if (const char* fault = progressive_mesh_fault(mesh)) return cannot(std::string("unsound mesh: ") + fault);
+    if (const char* fault = progressive_mesh_fault(mesh))
+        return cannot(std::string("unsound mesh: ") + fault);
 
     Mesh base;
     base.positions.assign(mesh.positions.begin(), mesh.positions.begin() + mesh.base_vertices);
     base.triangles.assign(mesh.triangles.begin(), mesh.triangles.begin() + mesh.base_triangles);
-    if (!mesh.weights.empty()) base.weights.assign(mesh.weights.begin(), mesh.weights.begin() + mesh.base_vertices);
+    if (!mesh.weights.empty())
+        base.weights.assign(mesh.weights.begin(), mesh.weights.begin() + mesh.base_vertices);
     auto base_bytes = encode_base(base);
     if (!base_bytes) return base_bytes.error();
 
-    // Blocks start small, so that the first bytes already refine, and grow to the size asked for. How many raw bytes fill a block
-    // is learnt from the block before.
+    // Blocks start small, so that the first bytes already refine, and grow to the size asked for. How many
+    // raw bytes fill a block is learnt from the block before.
     std::vector<Block> blocks;
     BlockEncoder encoder(mesh);
     double raw_per_stored = 1.5;
@@ -141,8 +153,8 @@ Result<std::vector<std::byte>> write_progressive_mesh(const ProgressiveMesh& mes
         block.raw_bytes = static_cast<std::uint32_t>(raw.size());
         block.splits_end = encoder.at();
         block.stored.resize(ZSTD_compressBound(raw.size()));
-        const std::size_t size =
-            ZSTD_compress(block.stored.data(), block.stored.size(), raw.data(), raw.size(), options.zstd_level);
+        const std::size_t size = ZSTD_compress(block.stored.data(), block.stored.size(), raw.data(),
+                                               raw.size(), options.zstd_level);
         if (ZSTD_isError(size)) return cannot(std::string("zstd: ") + ZSTD_getErrorName(size));
         block.stored.resize(size);
         raw_per_stored = std::clamp(double(raw.size()) / double(size), 1.0, 8.0);

@@ -8,7 +8,8 @@
 namespace vsplit {
 namespace {
 
-/// Exchanges a move's values with the buffers': refining stores the coarser values where the finer ones were, and back.
+/// Exchanges a move's values with the buffers': refining stores the coarser values where the finer ones were,
+/// and back.
 void exchange(ProgressiveMesh& mesh, VertexMove& move) {
     std::swap(mesh.positions[move.vertex], move.position);
     if (!mesh.weights.empty()) std::swap(mesh.weights[move.vertex], move.weight);
@@ -57,7 +58,8 @@ std::span<const Triangle> LiveMesh::triangles() const {
 }
 
 std::span<const float> LiveMesh::weights() const {
-    return mesh_.weights.empty() ? std::span<const float>{} : std::span(mesh_.weights).first(vertices_at(mesh_, level_));
+    return mesh_.weights.empty() ? std::span<const float>{}
+                                 : std::span(mesh_.weights).first(vertices_at(mesh_, level_));
 }
 
 Mesh LiveMesh::snapshot() const {

@@ -8,7 +8,8 @@ namespace vsplit {
 
 const char* mesh_fault(const Mesh& mesh) {
     for (const Float3& p : mesh.positions)
-        if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) return "a position is not finite";
+        if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
+            return "a position is not finite";
     for (const Triangle& t : mesh.triangles) {
         for (const std::uint32_t v : t)
             if (v >= mesh.positions.size()) return "a triangle names a vertex that does not exist";

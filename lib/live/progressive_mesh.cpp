@@ -8,15 +8,20 @@
 namespace vsplit {
 namespace {
 
-bool finite(const Float3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
+bool finite(const Float3& p) {
+    return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+}
 
-bool names_twice(const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }
+bool names_twice(const Triangle& t) {
+    return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
+}
 
 /// The last level whose key is at most `limit`, keys growing with the level.
 template <class Key>
 std::size_t last_level(const ProgressiveMesh& mesh, std::uint64_t limit, Key key) {
-    const auto it = std::upper_bound(mesh.splits.begin(), mesh.splits.end(), limit,
-                                     [&](std::uint64_t value, const Split& split) { return value < key(split); });
+    const auto it =
+        std::upper_bound(mesh.splits.begin(), mesh.splits.end(), limit,
+                         [&](std::uint64_t value, const Split& split) { return value < key(split); });
     return static_cast<std::size_t>(it - mesh.splits.begin());
 }
 
@@ -43,17 +48,20 @@ std::size_t level_for_vertices(const ProgressiveMesh& mesh, std::uint64_t count)
 }
 
 std::size_t level_for_error(const ProgressiveMesh& mesh, double error) {
-    const auto it = std::partition_point(mesh.splits.begin(), mesh.splits.end(),
-                                         [&](const Split& split) { return static_cast<double>(split.error) > error; });
+    const auto it = std::partition_point(mesh.splits.begin(), mesh.splits.end(), [&](const Split& split) {
+        return static_cast<double>(split.error) > error;
+    });
     return static_cast<std::size_t>(it - mesh.splits.begin());
 }
 
 const char* progressive_mesh_fault(const ProgressiveMesh& mesh) {
     const std::size_t vertex_count = mesh.positions.size(), triangle_count = mesh.triangles.size();
-    if (vertex_count >= kNoVertex || triangle_count >= kNoVertex / 3) return "there are too many vertices or triangles";
+    if (vertex_count >= kNoVertex || triangle_count >= kNoVertex / 3)
+        return "there are too many vertices or triangles";
     if (mesh.base_vertices > vertex_count || mesh.base_triangles > triangle_count)
         return "the base mesh is larger than the full mesh";
-    if (!mesh.weights.empty() && mesh.weights.size() != vertex_count) return "there are not as many weights as vertices";
+    if (!mesh.weights.empty() && mesh.weights.size() != vertex_count)
+        return "there are not as many weights as vertices";
     if (mesh.parents.size() != vertex_count) return "there are not as many parents as vertices";
     for (const Float3& p : mesh.positions)
         if (!finite(p)) return "a position is not finite";
@@ -70,7 +78,8 @@ const char* progressive_mesh_fault(const ProgressiveMesh& mesh) {
     std::vector<Triangle> corners(mesh.triangles);
     for (std::uint32_t t = 0; t < mesh.base_triangles; ++t) {
         for (const std::uint32_t v : corners[t])
-            if (v >= mesh.base_vertices) return "a triangle of the base mesh names a vertex that does not exist";
+            if (v >= mesh.base_vertices)
+                return "a triangle of the base mesh names a vertex that does not exist";
         if (names_twice(corners[t])) return "a triangle of the base mesh names a vertex twice";
     }
     Split before = base;
@@ -89,22 +98,26 @@ const char* progressive_mesh_fault(const ProgressiveMesh& mesh) {
                 return "a vertex is not younger than its parent";
         for (std::uint32_t i = before.corners_end; i < split.corners_end; ++i) {
             const CornerChange& change = mesh.corner_changes[i];
-            if (change.corner / 3 >= before.triangles_end) return "a corner change names a triangle that does not exist";
+            if (change.corner / 3 >= before.triangles_end)
+                return "a corner change names a triangle that does not exist";
             if (change.vertex < before.vertices_end || change.vertex >= split.vertices_end)
                 return "a corner change names a vertex that its split did not make";
             std::uint32_t& corner = corners[change.corner / 3][change.corner % 3];
-            if (mesh.parents[change.vertex] != corner) return "a corner does not hold the parent of its new vertex";
+            if (mesh.parents[change.vertex] != corner)
+                return "a corner does not hold the parent of its new vertex";
             corner = change.vertex;
         }
         for (std::uint32_t i = before.corners_end; i < split.corners_end; ++i)
-            if (names_twice(corners[mesh.corner_changes[i].corner / 3])) return "a triangle names a vertex twice after a split";
+            if (names_twice(corners[mesh.corner_changes[i].corner / 3]))
+                return "a triangle names a vertex twice after a split";
         for (std::uint32_t t = before.triangles_end; t < split.triangles_end; ++t) {
             for (const std::uint32_t v : corners[t])
                 if (v >= split.vertices_end) return "a new triangle names a vertex that does not exist";
             if (names_twice(corners[t])) return "a new triangle names a vertex twice";
         }
         for (std::uint32_t i = before.moves_end; i < split.moves_end; ++i) {
-            if (mesh.moves[i].vertex >= before.vertices_end) return "a move names a vertex that does not exist";
+            if (mesh.moves[i].vertex >= before.vertices_end)
+                return "a move names a vertex that does not exist";
             if (!finite(mesh.moves[i].position)) return "a position is not finite";
             if (!(mesh.moves[i].weight >= 0)) return "a weight is negative or not a number";
         }
@@ -114,7 +127,8 @@ const char* progressive_mesh_fault(const ProgressiveMesh& mesh) {
     return nullptr;
 }
 
-std::vector<float> inherit_weights(const ProgressiveMesh& mesh, std::size_t level, const std::vector<float>& weights) {
+std::vector<float> inherit_weights(const ProgressiveMesh& mesh, std::size_t level,
+                                   const std::vector<float>& weights) {
     std::vector<float> all(weights);
     all.resize(mesh.positions.size(), 1.0f);
     for (std::size_t v = vertices_at(mesh, level); v < all.size(); ++v)

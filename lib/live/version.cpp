@@ -4,6 +4,8 @@
 
 namespace vsplit {
 
-const char* version() { return VSPLIT_VERSION; }
+const char* version() {
+    return VSPLIT_VERSION;
+}
 
 }  // namespace vsplit

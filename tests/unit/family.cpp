@@ -14,7 +14,8 @@ namespace {
 using std::numbers::pi;
 
 Mesh make_non_manifold_fan() {
-    // Five grids that share one edge row, like the pages of a book, and one vertex shared with a far tetrahedron.
+    // Five grids that share one edge row, like the pages of a book, and one vertex shared with a far
+    // tetrahedron.
     Mesh mesh;
     constexpr int n = 6;
     for (int i = 0; i <= n; ++i) mesh.positions.push_back({0, 0, float(i) / n});
@@ -24,7 +25,8 @@ Mesh make_non_manifold_fan() {
         for (int c = 1; c <= n; ++c) {
             const auto first = static_cast<std::uint32_t>(mesh.positions.size());
             for (int i = 0; i <= n; ++i)
-                mesh.positions.push_back({std::cos(a) * float(c) / n, std::sin(a) * float(c) / n, float(i) / n});
+                mesh.positions.push_back(
+                    {std::cos(a) * float(c) / n, std::sin(a) * float(c) / n, float(i) / n});
             for (std::uint32_t i = 0; i < n; ++i) {
                 mesh.triangles.push_back({previous + i, first + i, first + i + 1});
                 mesh.triangles.push_back({previous + i, first + i + 1, previous + i + 1});
@@ -44,7 +46,8 @@ Mesh make_non_manifold_fan() {
 }
 
 Mesh make_degenerate() {
-    // A grid with zero-area triangles: a row collapsed onto a line, coincident vertices, duplicate and reversed triangles.
+    // A grid with zero-area triangles: a row collapsed onto a line, coincident vertices, duplicate and
+    // reversed triangles.
     Mesh mesh = make_grid(8);
     for (std::uint32_t i = 0; i < 9; ++i) mesh.positions[9 * 4 + i] = mesh.positions[9 * 3 + i];
     mesh.positions[1] = mesh.positions[0];
@@ -61,18 +64,22 @@ Mesh make_sphere(int slices, int stacks) {
     for (int i = 1; i < stacks; ++i)
         for (int j = 0; j < slices; ++j) {
             const double t = pi * i / stacks, p = 2 * pi * j / slices;
-            mesh.positions.push_back({float(std::sin(t) * std::cos(p)), float(std::sin(t) * std::sin(p)), float(std::cos(t))});
+            mesh.positions.push_back(
+                {float(std::sin(t) * std::cos(p)), float(std::sin(t) * std::sin(p)), float(std::cos(t))});
         }
     const auto last = static_cast<std::uint32_t>(mesh.positions.size());
     mesh.positions.push_back({0, 0, -1});
-    const auto at = [&](int i, int j) { return static_cast<std::uint32_t>(1 + (i - 1) * slices + j % slices); };
+    const auto at = [&](int i, int j) {
+        return static_cast<std::uint32_t>(1 + (i - 1) * slices + j % slices);
+    };
     for (int j = 0; j < slices; ++j) mesh.triangles.push_back({0, at(1, j), at(1, j + 1)});
     for (int i = 1; i + 1 < stacks; ++i)
         for (int j = 0; j < slices; ++j) {
             mesh.triangles.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
             mesh.triangles.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
         }
-    for (int j = 0; j < slices; ++j) mesh.triangles.push_back({at(stacks - 1, j), last, at(stacks - 1, j + 1)});
+    for (int j = 0; j < slices; ++j)
+        mesh.triangles.push_back({at(stacks - 1, j), last, at(stacks - 1, j + 1)});
     return mesh;
 }
 
@@ -94,7 +101,8 @@ Mesh make_torus(int n, int m) {
     for (int i = 0; i < n; ++i)
         for (int j = 0; j < m; ++j) {
             const double u = 2 * pi * i / n, v = 2 * pi * j / m, r = 1 + 0.35 * std::cos(v);
-            mesh.positions.push_back({float(r * std::cos(u)), float(r * std::sin(u)), float(0.35 * std::sin(v))});
+            mesh.positions.push_back(
+                {float(r * std::cos(u)), float(r * std::sin(u)), float(0.35 * std::sin(v))});
         }
     const auto at = [&](int i, int j) { return static_cast<std::uint32_t>((i % n) * m + j % m); };
     for (int i = 0; i < n; ++i)
@@ -108,7 +116,8 @@ Mesh make_torus(int n, int m) {
 Mesh join(const Mesh& a, const Mesh& b, Float3 shift) {
     Mesh mesh = a;
     const auto base = static_cast<std::uint32_t>(a.positions.size());
-    for (const Float3& p : b.positions) mesh.positions.push_back({p.x + shift.x, p.y + shift.y, p.z + shift.z});
+    for (const Float3& p : b.positions)
+        mesh.positions.push_back({p.x + shift.x, p.y + shift.y, p.z + shift.z});
     for (const Triangle& t : b.triangles) mesh.triangles.push_back({t[0] + base, t[1] + base, t[2] + base});
     return mesh;
 }
@@ -123,7 +132,9 @@ const std::vector<NamedMesh>& mesh_family() {
         for (Float3& p : bowl.positions) p.z = (p.x - 0.5f) * (p.x - 0.5f) + 0.3f * std::sin(7 * p.y);
         all.push_back({"bowl", bowl});
         Mesh parts;
-        for (int i = 0; i < 24; ++i) parts = join(parts, i % 3 == 0 ? make_grid(3) : make_sphere(6 + i % 5, 4 + i % 3), {3.0f * float(i), 0, 0});
+        for (int i = 0; i < 24; ++i)
+            parts = join(parts, i % 3 == 0 ? make_grid(3) : make_sphere(6 + i % 5, 4 + i % 3),
+                         {3.0f * float(i), 0, 0});
         all.push_back({"many components", parts});
         all.push_back({"non-manifold", make_non_manifold_fan()});
         all.push_back({"degenerate", make_degenerate()});
@@ -142,7 +153,9 @@ std::optional<std::string> corpus_file(const std::string& name) {
     const std::string path = std::string(VSPLIT_CORPUS) + "/" + name;
     if (std::filesystem::exists(path)) return path;
     static std::set<std::string> said;
-    if (said.insert(name).second) std::fprintf(stderr, "SKIPPED: %s is not here, this part of the test runs without it\n", path.c_str());
+    if (said.insert(name).second)
+        std::fprintf(stderr, "SKIPPED: %s is not here, this part of the test runs without it\n",
+                     path.c_str());
     return std::nullopt;
 }
 

@@ -17,10 +17,12 @@ struct NamedMesh {
     Mesh mesh;
 };
 
-/// Closed, bounded, of many components, non-manifold, degenerate, a single triangle, empty: small, made by code.
+/// Closed, bounded, of many components, non-manifold, degenerate, a single triangle, empty: small, made by
+/// code.
 const std::vector<NamedMesh>& mesh_family();
 
-/// The path of a shared model ("meshes/spot.obj"), or nothing, after saying on stderr that the test runs without it.
+/// The path of a shared model ("meshes/spot.obj"), or nothing, after saying on stderr that the test runs
+/// without it.
 std::optional<std::string> corpus_file(const std::string& name);
 
 /// A sphere of latitude and longitude: 2 * slices * (stacks - 1) triangles, radius 1.

@@ -12,8 +12,9 @@
 
 namespace vsplit {
 
-/// Index and vertex buffers at one level of a progressive mesh. Refining, then coarsening by the same splits restores every byte.
-/// Owns the progressive mesh; allocates only on construction. Contents must be sound (progressive_mesh_fault() is null): not checked again.
+/// Index and vertex buffers at one level of a progressive mesh. Refining, then coarsening by the same splits
+/// restores every byte. Owns the progressive mesh; allocates only on construction. Contents must be sound
+/// (progressive_mesh_fault() is null): not checked again.
 class LiveMesh {
   public:
     explicit LiveMesh(ProgressiveMesh mesh);
@@ -22,7 +23,8 @@ class LiveMesh {
     std::size_t level() const { return level_; }
     std::size_t max_level() const { return mesh_.splits.size(); }
 
-    /// Applies or undoes splits one by one until `level` (clamped to max_level()) is reached; time is linear in their number.
+    /// Applies or undoes splits one by one until `level` (clamped to max_level()) is reached; time is linear
+    /// in their number.
     void go_to(std::size_t level);
 
     std::span<const Float3> positions() const;
@@ -34,8 +36,8 @@ class LiveMesh {
     /// A copy of the mesh at this level.
     Mesh snapshot() const;
 
-    /// Between calls its moves and positions are those of the current level: `moves` of splits already applied hold the coarser
-    /// values (that is how they are undone), and `triangles` the current corners.
+    /// Between calls its moves and positions are those of the current level: `moves` of splits already
+    /// applied hold the coarser values (that is how they are undone), and `triangles` the current corners.
     const ProgressiveMesh& state() const { return mesh_; }
 
     /// Gives the progressive mesh back as it was given, at level 0; the live mesh is empty afterwards.

@@ -49,8 +49,9 @@ struct FileInfo {
     std::vector<BlockInfo> blocks;
 };
 
-/// Reads header and table. `bytes` may be the whole file or a beginning of it that holds the table; `file_bytes` is not compared
-/// with bytes.size(). Errors: kTruncated, kMalformed, kChecksum, kUnsupported (a newer version), kLimit.
+/// Reads header and table. `bytes` may be the whole file or a beginning of it that holds the table;
+/// `file_bytes` is not compared with bytes.size(). Errors: kTruncated, kMalformed, kChecksum, kUnsupported (a
+/// newer version), kLimit.
 Result<FileInfo> read_info(std::span<const std::byte> bytes, const Limits& limits = {});
 
 /// Reads a whole file. The result is sound: progressive_mesh_fault() is null.

@@ -28,7 +28,8 @@ enum class ErrorCode : std::uint8_t {
 /// The stable lower-case name of a code, "malformed".
 const char* error_code_name(ErrorCode code);
 
-/// One failure: what, in words for a person, and where. `message` names no file; the one who knows it adds it.
+/// One failure: what, in words for a person, and where. `message` names no file; the one who knows it adds
+/// it.
 struct Error {
     static constexpr std::uint64_t kNowhere = ~std::uint64_t{0};
 
@@ -51,16 +52,28 @@ class [[nodiscard]] Result {
     bool ok() const { return state_.index() == 0; }
     explicit operator bool() const { return ok(); }
 
-    T& value() & { assert(ok()); return *std::get_if<0>(&state_); }
-    const T& value() const& { assert(ok()); return *std::get_if<0>(&state_); }
-    T&& value() && { assert(ok()); return std::move(*std::get_if<0>(&state_)); }
+    T& value() & {
+        assert(ok());
+        return *std::get_if<0>(&state_);
+    }
+    const T& value() const& {
+        assert(ok());
+        return *std::get_if<0>(&state_);
+    }
+    T&& value() && {
+        assert(ok());
+        return std::move(*std::get_if<0>(&state_));
+    }
     T* operator->() { return &value(); }
     const T* operator->() const { return &value(); }
     T& operator*() & { return value(); }
     const T& operator*() const& { return value(); }
     T&& operator*() && { return std::move(*this).value(); }
 
-    const Error& error() const { assert(!ok()); return *std::get_if<1>(&state_); }
+    const Error& error() const {
+        assert(!ok());
+        return *std::get_if<1>(&state_);
+    }
 
   private:
     std::variant<T, Error> state_;

@@ -18,7 +18,9 @@ struct WriteOptions {
     int zstd_level = 9;                     ///< 1 (fast) to 19 (small).
 };
 
-/// The file's bytes: lossless, the same for the same mesh and options. Errors: kArgument for an unsound mesh or options out of range.
-Result<std::vector<std::byte>> write_progressive_mesh(const ProgressiveMesh& mesh, const WriteOptions& options = {});
+/// The file's bytes: lossless, the same for the same mesh and options. Errors: kArgument for an unsound mesh
+/// or options out of range.
+Result<std::vector<std::byte>> write_progressive_mesh(const ProgressiveMesh& mesh,
+                                                      const WriteOptions& options = {});
 
 }  // namespace vsplit

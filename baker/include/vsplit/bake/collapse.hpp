@@ -17,7 +17,8 @@ namespace vsplit::bake {
 
 /// What a collapse costs.
 enum class Cost : std::uint8_t {
-    kQuadric,  ///< Memoryless area-weighted quadrics with volume and boundary terms; docs/collapse.md. The default.
+    kQuadric,  ///< Memoryless area-weighted quadrics with volume and boundary terms; docs/collapse.md. The
+               ///< default.
     kPaper,    ///< E = Q/Re + F of the paper (DESIGN.md, docs/collapse.md): quadric, regularity, curvature.
 };
 
@@ -31,24 +32,28 @@ struct CollapseOptions {
     Cost cost = Cost::kQuadric;
     Placement placement = Placement::kOptimal;
 
-    bool lock_boundary = false;        ///< Vertices on boundary and non-manifold edges never move nor go.
-    double lock_features_degrees = 0;  ///< If > 0: nor do those on edges whose dihedral angle departs from flat by more.
+    bool lock_boundary = false;  ///< Vertices on boundary and non-manifold edges never move nor go.
+    double lock_features_degrees =
+        0;  ///< If > 0: nor do those on edges whose dihedral angle departs from flat by more.
 
-    /// Weight of a boundary edge's squared length times squared distance, against a triangle's area times squared distance.
+    /// Weight of a boundary edge's squared length times squared distance, against a triangle's area times
+    /// squared distance.
     double boundary_weight = 10;
     /// Weight of the change of volume (soft form of Lindstrom and Turk 1998, section 4.1).
     double volume_weight = 3;
-    /// Pull toward the edge's middle, relative to the quadric's trace: what decides where the quadric does not.
+    /// Pull toward the edge's middle, relative to the quadric's trace: what decides where the quadric does
+    /// not.
     double regularisation = 1e-8;
-    /// A collapse waits until its cost reaches this times the fourth power of the deviation it makes (times the root of the area of its
-    /// triangles); 0 turns it off. Larger trades the mean error for the maximum.
+    /// A collapse waits until its cost reaches this times the fourth power of the deviation it makes (times
+    /// the root of the area of its triangles); 0 turns it off. Larger trades the mean error for the maximum.
     double deviation_limit = 5;
     /// Guard: a triangle's normal may turn by at most the angle of this cosine in one collapse.
     double min_normal_cosine = 0.4;
-    /// Guard: least quality 4 sqrt(3) area / (sum of squared edges) of a changed triangle, unless it was worse before.
+    /// Guard: least quality 4 sqrt(3) area / (sum of squared edges) of a changed triangle, unless it was
+    /// worse before.
     double min_quality = 0.02;
-    /// Measures the distance to the input at a dozen levels and scales the recorded errors to bound it; without, they are
-    /// local estimates.
+    /// Measures the distance to the input at a dozen levels and scales the recorded errors to bound it;
+    /// without, they are local estimates.
     bool calibrate = true;
 };
 
@@ -58,9 +63,11 @@ struct CollapseReport {
     std::uint64_t components = 0;           ///< Of the input.
     std::uint64_t unused_vertices = 0;      ///< That no triangle uses: left out of the record.
     std::uint64_t components_vanished = 0;  ///< Left out of the base mesh; one split brings each back.
-    std::uint64_t fixed_vertices = 0;       ///< Non-manifold corners, locked, or of infinite weight: never removed.
-    std::string stopped_by;                 ///< Why there is no coarser base: "every edge is guarded or would change the topology".
-    double collapse_cpu_seconds = 0;        ///< The record alone, all threads.
+    std::uint64_t fixed_vertices =
+        0;  ///< Non-manifold corners, locked, or of infinite weight: never removed.
+    std::string
+        stopped_by;  ///< Why there is no coarser base: "every edge is guarded or would change the topology".
+    double collapse_cpu_seconds = 0;  ///< The record alone, all threads.
     double calibrate_cpu_seconds = 0;
 };
 
@@ -69,10 +76,12 @@ struct CollapseResult {
     CollapseReport report;
 };
 
-/// Collapses edges by ascending cost until none is left that keeps the topology, recording each. `mesh` must be sound
-/// (mesh_fault() null): anything else is kArgument. Weights of the mesh (painted; 1 if none) multiply the cost of their vertices,
-/// average on a collapse, and a vertex of infinite weight never moves nor goes. Vertices that no triangle uses are left out and counted. The result is the same for any number of threads.
-/// Works on up to 2^30 triangles; memory about 150 bytes a triangle.
-Result<CollapseResult> collapse(const Mesh& mesh, const CollapseOptions& options = {}, const Progress& progress = {});
+/// Collapses edges by ascending cost until none is left that keeps the topology, recording each. `mesh` must
+/// be sound (mesh_fault() null): anything else is kArgument. Weights of the mesh (painted; 1 if none)
+/// multiply the cost of their vertices, average on a collapse, and a vertex of infinite weight never moves
+/// nor goes. Vertices that no triangle uses are left out and counted. The result is the same for any number
+/// of threads. Works on up to 2^30 triangles; memory about 150 bytes a triangle.
+Result<CollapseResult> collapse(const Mesh& mesh, const CollapseOptions& options = {},
+                                const Progress& progress = {});
 
 }  // namespace vsplit::bake
