@@ -17,12 +17,14 @@ NAMES_FORBIDDEN = re.compile(r'CGAL|OpenMesh|tiny_?gltf|\bVTK\b|\bvtk[A-Z]', re.
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*[<"]([^>"]+)[>"]', re.MULTILINE)
 ROOMS = [
     # (pattern of the included path, folders that may, name)
-    (re.compile(r'^CGAL/'), ('baker/surface/', 'baker/points/', 'tests/unit/surface_', 'tests/unit/points_'), 'CGAL'),
+    (re.compile(r'^CGAL/'), ('baker/surface/', 'baker/points/', 'tests/unit/surface_', 'tests/unit/points_', 'tests/bench/powercrust/', 'tests/bench/simplify/peer_cgal'), 'CGAL'),
     (re.compile(r'(^|/)tiny_?gltf(_v3)?\.h$'), ('baker/gltf/', 'tests/unit/gltf_'), 'tinygltf'),
-    (re.compile(r'^OpenMesh/'), ('baker/collapse/', 'tests/unit/collapse_', 'tests/unit/meshes_'), 'OpenMesh'),
-    (re.compile(r'^vtk[A-Z]'), ('viewer/desktop/',), 'VTK'),
+    (re.compile(r'^OpenMesh/'), ('baker/collapse/', 'tests/unit/collapse_', 'tests/unit/meshes_', 'tests/bench/simplify/peer_openmesh'), 'OpenMesh'),
+    (re.compile(r'^vtk[A-Z]'), ('viewer/desktop/', 'tests/bench/simplify/peer_vtk'), 'VTK'),
 ]
 GPL_FOLDERS = ('baker/surface/', 'baker/points/')
+# Outside of these two, what includes CGAL to test or to measure it.
+GPL_TESTS = re.compile(r'tests/(unit/(surface|points)_|bench/powercrust/|bench/simplify/peer_cgal)')
 
 
 def files(root):
@@ -61,7 +63,7 @@ def faults(root):
             found.append(f'{name}: has no SPDX head')
         elif name.startswith(GPL_FOLDERS) and not licence[0].startswith('GPL-3.0-or-later'):
             found.append(f'{name}: links CGAL, so it is GPL-3.0-or-later, not {licence[0]}')
-        elif not name.startswith(GPL_FOLDERS) and licence[0] != 'MIT' and not re.match(r'tests/unit/(surface|points)_', name):
+        elif not name.startswith(GPL_FOLDERS) and licence[0] != 'MIT' and not GPL_TESTS.match(name):
             found.append(f'{name}: is {licence[0]}, not MIT')
     return found
 
