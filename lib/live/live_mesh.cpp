@@ -10,9 +10,16 @@ namespace {
 
 /// Exchanges a move's values with the buffers': refining stores the coarser values where the finer ones were,
 /// and back.
-void exchange(ProgressiveMesh& mesh, VertexMove& move) {
+void exchange(ProgressiveMesh& mesh, std::size_t index) {
+    VertexMove& move = mesh.moves[index];
     std::swap(mesh.positions[move.vertex], move.position);
     if (!mesh.weights.empty()) std::swap(mesh.weights[move.vertex], move.weight);
+    for (std::size_t i = 0; i < mesh.attributes.size(); ++i) {
+        const std::size_t components = mesh.attributes[i].components;
+        std::swap_ranges(mesh.moved_values[i].begin() + std::ptrdiff_t(components * index),
+                         mesh.moved_values[i].begin() + std::ptrdiff_t(components * (index + 1)),
+                         mesh.attributes[i].values.begin() + std::ptrdiff_t(components * move.vertex));
+    }
 }
 
 }  // namespace
@@ -27,7 +34,7 @@ void LiveMesh::refine() {
         const CornerChange& change = mesh_.corner_changes[i];
         mesh_.triangles[change.corner / 3][change.corner % 3] = change.vertex;
     }
-    for (std::uint32_t i = moves; i < split.moves_end; ++i) exchange(mesh_, mesh_.moves[i]);
+    for (std::uint32_t i = moves; i < split.moves_end; ++i) exchange(mesh_, i);
     ++level_;
 }
 
@@ -36,7 +43,7 @@ void LiveMesh::coarsen() {
     const Split& split = mesh_.splits[level_];
     const std::uint32_t corners = level_ == 0 ? 0 : mesh_.splits[level_ - 1].corners_end;
     const std::uint32_t moves = level_ == 0 ? 0 : mesh_.splits[level_ - 1].moves_end;
-    for (std::uint32_t i = split.moves_end; i-- > moves;) exchange(mesh_, mesh_.moves[i]);
+    for (std::uint32_t i = split.moves_end; i-- > moves;) exchange(mesh_, i);
     for (std::uint32_t i = split.corners_end; i-- > corners;) {
         const CornerChange& change = mesh_.corner_changes[i];
         mesh_.triangles[change.corner / 3][change.corner % 3] = mesh_.parents[change.vertex];
@@ -66,7 +73,16 @@ Mesh LiveMesh::snapshot() const {
     const auto p = positions();
     const auto t = triangles();
     const auto w = weights();
-    return {{p.begin(), p.end()}, {t.begin(), t.end()}, {w.begin(), w.end()}};
+    Mesh mesh{{p.begin(), p.end()}, {t.begin(), t.end()}, {w.begin(), w.end()}};
+    for (const Attribute& a : mesh_.attributes)
+        mesh.attributes.push_back(
+            {a.name,
+             a.semantic,
+             a.components,
+             {a.values.begin(), a.values.begin() + std::ptrdiff_t(a.components * p.size())}});
+    if (!mesh_.groups.empty())
+        mesh.groups.assign(mesh_.groups.begin(), mesh_.groups.begin() + std::ptrdiff_t(t.size()));
+    return mesh;
 }
 
 ProgressiveMesh LiveMesh::release() {

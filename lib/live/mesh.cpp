@@ -6,6 +6,53 @@
 
 namespace vsplit {
 
+const char* attributes_fault(const std::vector<Attribute>& attributes, std::size_t vertices) {
+    for (std::size_t i = 0; i < attributes.size(); ++i) {
+        const Attribute& attribute = attributes[i];
+        if (attribute.components < 1 || attribute.components > 16)
+            return "an attribute has no components, or more than 16";
+        std::uint32_t least = 1, most = 16;
+        switch (attribute.semantic) {
+            case Semantic::kNormal:
+            case Semantic::kMorphOffset:
+            case Semantic::kMorphNormal:
+            case Semantic::kMorphTangent:
+                least = most = 3;
+                break;
+            case Semantic::kTangent:
+            case Semantic::kJointWeights:
+            case Semantic::kJoints:
+                least = most = 4;
+                break;
+            case Semantic::kTexcoord:
+                least = most = 2;
+                break;
+            case Semantic::kColor:
+                least = 3, most = 4;
+                break;
+            case Semantic::kOther:
+                break;
+            default:
+                return "an attribute's semantic is unknown";
+        }
+        if (attribute.components < least || attribute.components > most)
+            return "an attribute's semantic asks for another number of components";
+        if (attribute.values.size() / attribute.components != vertices ||
+            attribute.values.size() % attribute.components != 0)
+            return "there are not as many values of an attribute as vertices";
+        for (const float value : attribute.values)
+            if (!std::isfinite(value)) return "an attribute is not finite";
+        for (std::size_t j = 0; j < i; ++j)
+            if (attributes[j].name == attribute.name) return "two attributes have one name";
+        const bool follows_joints = i > 0 && attributes[i - 1].semantic == Semantic::kJoints;
+        if ((attribute.semantic == Semantic::kJointWeights) != follows_joints)
+            return "joints and their weights do not follow each other";
+    }
+    if (!attributes.empty() && attributes.back().semantic == Semantic::kJoints)
+        return "joints and their weights do not follow each other";
+    return nullptr;
+}
+
 const char* mesh_fault(const Mesh& mesh) {
     for (const Float3& p : mesh.positions)
         if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
@@ -19,7 +66,9 @@ const char* mesh_fault(const Mesh& mesh) {
         return "there are not as many weights as vertices";
     for (const float w : mesh.weights)
         if (!(w >= 0)) return "a weight is negative or not a number";
-    return nullptr;
+    if (!mesh.groups.empty() && mesh.groups.size() != mesh.triangles.size())
+        return "there are not as many groups as triangles";
+    return attributes_fault(mesh.attributes, mesh.positions.size());
 }
 
 }  // namespace vsplit

@@ -75,6 +75,18 @@ const char* progressive_mesh_fault(const ProgressiveMesh& mesh) {
         last.corners_end != mesh.corner_changes.size() || last.moves_end != mesh.moves.size())
         return "the last split does not end where the arrays end";
 
+    if (!mesh.groups.empty() && mesh.groups.size() != triangle_count)
+        return "there are not as many groups as triangles";
+    if (const char* fault = attributes_fault(mesh.attributes, vertex_count)) return fault;
+    if (mesh.moved_values.size() != mesh.attributes.size())
+        return "moves do not have the attributes of the vertices";
+    for (std::size_t i = 0; i < mesh.attributes.size(); ++i) {
+        if (mesh.moved_values[i].size() != mesh.attributes[i].components * mesh.moves.size())
+            return "moves do not have the attributes of the vertices";
+        for (const float value : mesh.moved_values[i])
+            if (!std::isfinite(value)) return "an attribute is not finite";
+    }
+
     std::vector<Triangle> corners(mesh.triangles);
     for (std::uint32_t t = 0; t < mesh.base_triangles; ++t) {
         for (const std::uint32_t v : corners[t])

@@ -36,7 +36,7 @@ struct CornerChange {
     std::uint32_t vertex = 0;  ///< Born in this split.
 };
 
-/// A vertex older than the split whose place or weight differs after it; usually the parent.
+/// A vertex older than the split whose place, weight or attributes differ after it; usually the parent.
 struct VertexMove {
     std::uint32_t vertex = 0;
     Float3 position;   ///< After the split (the finer one).
@@ -62,6 +62,10 @@ struct ProgressiveMesh {
     std::vector<Split> splits;
     std::vector<CornerChange> corner_changes;
     std::vector<VertexMove> moves;
+    std::vector<Attribute> attributes;  ///< At birth, for all vertices.
+    /// Parallel to `attributes`: the values of the vertices in `moves` after their move, components of each.
+    std::vector<std::vector<float>> moved_values;
+    std::vector<std::uint32_t> groups;  ///< Empty (all 0), or one per triangle: never changes.
 
     std::size_t levels() const { return splits.size() + 1; }
 };
