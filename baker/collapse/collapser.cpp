@@ -133,7 +133,9 @@ Candidate Collapser::evaluate(std::uint32_t u, std::uint32_t v, Fold fold) const
 void Collapser::price(std::uint32_t u, EdgeList& list) const {
     list.costs.resize(list.others.size());
     const bool optimal = !paper_ && options_.placement == Placement::kOptimal;
-    if (optimal) price_edges(mesh_, u, list.others, options_, list.costs.data());
+    const bool some =
+        std::any_of(list.folds.begin(), list.folds.end(), [](Fold fold) { return fold == Fold::kAnywhere; });
+    if (optimal && some) price_edges(mesh_, u, list.others, options_, list.costs.data());
     for (std::size_t i = 0; i < list.others.size(); ++i) {
         if (list.folds[i] == Fold::kNever)
             list.costs[i] = kNeverCost;
@@ -142,12 +144,18 @@ void Collapser::price(std::uint32_t u, EdgeList& list) const {
     }
 }
 
+Fold Collapser::fold_of(std::uint32_t u, std::uint32_t v) const {
+    // A hub's edges would break the limit; pricing them at each collapse near it would be quadratic.
+    const bool hub = std::max(mesh_.star(u).size(), mesh_.star(v).size()) > strictness_.max_valence;
+    return hub ? Fold::kNever : fold_rule(mesh_, u, v);
+}
+
 void Collapser::list_edges(std::uint32_t u, EdgeList& list) const {
     list.clear();
     if (mesh_.star(u).size() <= strictness_.max_valence)
         visit_neighbours(mesh_, u, list.scratch, [&](std::uint32_t v) {
-            if (!owns(u, v) || mesh_.star(v).size() > kHub) return;
-            if (const Fold fold = fold_rule(mesh_, u, v); fold != Fold::kNever) list.add(v, fold);
+            if (!owns(u, v)) return;
+            if (const Fold fold = fold_of(u, v); fold != Fold::kNever) list.add(v, fold);
         });
     price(u, list);
 }
@@ -219,9 +227,7 @@ void Collapser::apply(const EdgeStar& star, const Option& option, Float3 place, 
 
 void Collapser::reprice(std::uint32_t parent, std::uint32_t child, Bucket now) {
     for (std::size_t i = 0; i < ring_edges_.others.size(); ++i)
-        ring_edges_.folds[i] = mesh_.star(ring_edges_.others[i]).size() > kHub
-                                   ? Fold::kNever
-                                   : fold_rule(mesh_, parent, ring_edges_.others[i]);
+        ring_edges_.folds[i] = fold_of(parent, ring_edges_.others[i]);
     price(parent, ring_edges_);
     Target best;
     for (std::size_t i = 0; i < ring_edges_.others.size(); ++i) {
@@ -260,6 +266,7 @@ void Collapser::prefetch() const {
     const auto nothing = [](std::uint32_t) {};
     const auto neighbours = [&](std::uint32_t v) {
         fetch_ahead(&histories_[v]);
+        if (mesh_.star(v).size() > kLargeStar) return;
         for (const std::uint32_t t : mesh_.star(v)) {
             // Of a closed fan, the next corner of every triangle is every neighbour.
             const Triangle& c = mesh_.triangle(t);
@@ -290,7 +297,7 @@ void Collapser::process(std::uint32_t u, Bucket bucket) {
     float tried_cost = kNeverCost;
     Target& target = targets_[u];
     if (target.vertex != kNoVertex && mesh_.kind(target.vertex) != VertexKind::kDead) {
-        if (const Fold fold = fold_rule(mesh_, u, target.vertex); fold != Fold::kNever) {
+        if (const Fold fold = fold_of(u, target.vertex); fold != Fold::kNever) {
             const Option option{target.vertex, fold, evaluate(u, target.vertex, fold)};
             const float cost = float(option.candidate.cost);
             if (BucketQueue::bucket_of(cost) <= bucket) {

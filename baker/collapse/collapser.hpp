@@ -75,6 +75,8 @@ class Collapser {
     Candidate evaluate(std::uint32_t u, std::uint32_t v, Fold fold) const;
     /// Each edge is priced once: for the end that comes first, which waits in the queue with it.
     static bool owns(std::uint32_t u, std::uint32_t v) { return u < v; }
+    /// How an edge may fold as strictly as things are now.
+    Fold fold_of(std::uint32_t u, std::uint32_t v) const;
     /// Prices all edges of the list, which are those of `u`.
     void price(std::uint32_t u, EdgeList& list) const;
     /// The edges that `u` owns, with their costs.

@@ -14,6 +14,9 @@
 
 namespace vsplit::bake {
 
+/// Stars above this size are searched by sorting, and not fetched ahead.
+inline constexpr std::size_t kLargeStar = 64;
+
 /// Asks for a cache line. The empty assembly keeps g++ 12 from taking functions that only do this for ones
 /// without effect, whose calls it drops.
 inline void fetch_ahead(const void* line) {
@@ -73,6 +76,7 @@ class StarMesh {
     void prefetch_vertex(std::uint32_t v) const { fetch_ahead(&vertices_[v]); }
     void prefetch_star(std::uint32_t v) const { fetch_ahead(arena_.data() + vertices_[v].star_begin); }
     void prefetch_triangles(std::uint32_t v) const {
+        if (vertices_[v].star_size > kLargeStar) return;
         for (const std::uint32_t t : star(v)) fetch_ahead(&triangles_[t]);
     }
     /// Twice the area vector of a triangle.
@@ -109,9 +113,6 @@ struct Neighbour {
     std::uint32_t out = 0, in = 0;  ///< Triangles with the edge centre->vertex, vertex->centre.
     bool special() const { return out != 1 || in != 1; }
 };
-
-/// Stars above this size are searched by sorting.
-inline constexpr std::size_t kLargeStar = 64;
 
 /// Collects the neighbours of `v` into `out`: in order of first appearance, or by number if the star is
 /// larger than kLargeStar.
