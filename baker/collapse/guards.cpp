@@ -45,14 +45,15 @@ bool Guards::keeps_topology(const EdgeStar& star) {
         stamp_ = 0;
     }
     const std::uint32_t seen_first = ++stamp_, shared = ++stamp_;
-    for (std::size_t i = 0; i < star.first_size; ++i) stamps_[star.a[i]] = stamps_[star.b[i]] = seen_first;
-    for (const std::uint32_t w : star.opposite) stamps_[w] = shared;
+    std::uint32_t* const stamps = stamps_.data() - low_;
+    for (std::size_t i = 0; i < star.first_size; ++i) stamps[star.a[i]] = stamps[star.b[i]] = seen_first;
+    for (const std::uint32_t w : star.opposite) stamps[w] = shared;
     for (std::size_t i = star.first_size; i < star.size; ++i)
-        if (stamps_[star.a[i]] == seen_first || stamps_[star.b[i]] == seen_first) return false;
+        if (stamps[star.a[i]] == seen_first || stamps[star.b[i]] == seen_first) return false;
     // ... nor an edge between two of them: both ends would make the same triangle of it.
     bool first_has = false, second_has = false;
     for (std::size_t i = 0; i < star.size; ++i)
-        if (stamps_[star.a[i]] == shared && stamps_[star.b[i]] == shared)
+        if (stamps[star.a[i]] == shared && stamps[star.b[i]] == shared)
             (i < star.first_size ? first_has : second_has) = true;
     return !(first_has && second_has);
 }

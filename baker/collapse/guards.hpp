@@ -33,7 +33,14 @@ struct Strictness {
 
 class Guards {
   public:
-    explicit Guards(const StarMesh& mesh) : mesh_(mesh), stamps_(mesh.vertex_count(), 0) {}
+    explicit Guards(const StarMesh& mesh) : mesh_(mesh) {}
+
+    /// From now on only stars whose vertices are `low` to `high` - 1 are asked about.
+    void open(std::uint32_t low, std::uint32_t high) {
+        low_ = low;
+        stamps_.assign(high - low, 0);
+        stamp_ = 0;
+    }
 
     /// The link condition, and what else collapsing the edge would do to the topology.
     bool keeps_topology(const EdgeStar& star);
@@ -44,7 +51,8 @@ class Guards {
 
   private:
     const StarMesh& mesh_;
-    std::vector<std::uint32_t> stamps_;
+    std::uint32_t low_ = 0;
+    std::vector<std::uint32_t> stamps_;  // of low_ and up
     std::uint32_t stamp_ = 0;
 };
 

@@ -23,6 +23,9 @@ class Record {
              float error);
     /// A component went: `vertices` and (in `removed`) its triangles.
     void add_vanished(const std::vector<std::uint32_t>& vertices, float error);
+    /// Appends steps `begin` to `end` - 1 of another record.
+    void append(const Record& other, std::size_t begin, std::size_t end);
+    void clear();
 
     std::vector<std::uint32_t> corners_changed;  ///< 3 * triangle + corner.
     std::vector<std::uint32_t> removed;          ///< Triangles.
@@ -37,7 +40,7 @@ class Record {
 
   private:
     struct Step {
-        std::uint32_t child;  ///< Or kNoVertex: a component vanished.
+        std::uint32_t child;  ///< Or kNoVertex: a component vanished; the parent is its number among those.
         std::uint32_t parent;
         std::uint32_t corners_end;
         std::uint32_t removed_end;
@@ -48,6 +51,7 @@ class Record {
     std::vector<float> parent_weights_;
     std::vector<std::uint32_t> vanished_;         // vertices of vanished components
     std::vector<std::uint32_t> vanished_begins_;  // where each of them begins
+    float error_ = 0;                             // the largest so far
     bool has_weights_;
 };
 

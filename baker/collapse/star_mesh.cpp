@@ -92,10 +92,9 @@ StarMesh::StarMesh(const Mesh& mesh) {
         begin += v.star_size;
         v.star_size = 0;
     }
-    // Stars that outgrow their place move to the end; a fold adds what it takes away elsewhere, so this is
-    // ample.
-    arena_.reserve(std::size_t{begin} + begin / 2);
-    arena_.resize(begin);
+    // Stars that outgrow their place move to the end.
+    arena_.resize(begin + begin / 4);
+    arena_end_ = begin;
     for (std::uint32_t t = 0; t < triangles_.size(); ++t)
         for (const std::uint32_t v : triangles_[t])
             arena_[vertices_[v].star_begin + vertices_[v].star_size++] = t;
@@ -161,8 +160,8 @@ void StarMesh::classify() {
         vertices_.begin(), vertices_.end(), [](const Vertex& v) { return v.kind != VertexKind::kDead; }));
 }
 
-void StarMesh::fold(std::uint32_t child, std::uint32_t parent, std::vector<std::uint32_t>& corners_changed,
-                    std::vector<std::uint32_t>& removed) {
+std::size_t StarMesh::fold(std::uint32_t child, std::uint32_t parent,
+                           std::vector<std::uint32_t>& corners_changed, std::vector<std::uint32_t>& removed) {
     const std::size_t first_removed = removed.size();
     const auto has = [&](std::uint32_t t, std::uint32_t v) {
         return triangles_[t][0] == v || triangles_[t][1] == v || triangles_[t][2] == v;
@@ -177,14 +176,16 @@ void StarMesh::fold(std::uint32_t child, std::uint32_t parent, std::vector<std::
 
     // The parent's star without the removed triangles, then the child's; in place if it fits.
     std::uint32_t size = 0;
+    std::size_t taken = 0;
     const std::uint32_t capacity = vertices_[parent].star_size;
     for (std::uint32_t i = 0; i < capacity; ++i) {
         const std::uint32_t t = arena_[vertices_[parent].star_begin + i];
         if (!has(t, child)) arena_[vertices_[parent].star_begin + size++] = t;
     }
     if (size + kept > capacity) {
-        const auto begin = static_cast<std::uint32_t>(arena_.size());
-        arena_.resize(begin + size + kept);
+        taken = size + kept;
+        const std::uint32_t begin =
+            std::atomic_ref(arena_end_).fetch_add(size + kept, std::memory_order_relaxed);
         std::copy_n(arena_.begin() + vertices_[parent].star_begin, size, arena_.begin() + begin);
         vertices_[parent].star_begin = begin;
     }
@@ -199,7 +200,6 @@ void StarMesh::fold(std::uint32_t child, std::uint32_t parent, std::vector<std::
     vertices_[parent].star_size = size;
     vertices_[child].star_size = 0;
     vertices_[child].kind = VertexKind::kDead;
-    --live_vertices_;
 
     for (const std::uint32_t t : gone)
         for (const std::uint32_t w : triangles_[t])
@@ -208,16 +208,33 @@ void StarMesh::fold(std::uint32_t child, std::uint32_t parent, std::vector<std::
                 auto* at = std::find(begin, begin + vertices_[w].star_size, t);
                 *at = begin[--vertices_[w].star_size];
             }
-    live_triangles_ -= static_cast<std::uint32_t>(gone.size());
+    return taken;
 }
 
-void StarMesh::vanish(std::span<const std::uint32_t> vertices, std::span<const std::uint32_t> triangles) {
+void StarMesh::grow_room(std::size_t entries) {
+    std::size_t used = 0;
+    for (const Vertex& v : vertices_) used += v.star_size;
+    const std::size_t size = used + std::max(used / 4, entries);
+    if (used + used / 8 > arena_end_) {
+        arena_.resize(arena_end_ + std::max(used / 4, entries));
+        return;
+    }
+    std::vector<std::uint32_t> packed(size);
+    std::uint32_t end = 0;
+    for (Vertex& v : vertices_) {
+        std::copy_n(arena_.begin() + v.star_begin, v.star_size, packed.begin() + end);
+        v.star_begin = end;
+        end += v.star_size;
+    }
+    arena_ = std::move(packed);
+    arena_end_ = end;
+}
+
+void StarMesh::vanish(std::span<const std::uint32_t> vertices) {
     for (const std::uint32_t v : vertices) {
         vertices_[v].kind = VertexKind::kDead;
         vertices_[v].star_size = 0;
     }
-    live_vertices_ -= static_cast<std::uint32_t>(vertices.size());
-    live_triangles_ -= static_cast<std::uint32_t>(triangles.size());
 }
 
 void neighbours_of(const StarMesh& mesh, std::uint32_t v, std::vector<Neighbour>& out) {

@@ -4,6 +4,7 @@
 // The mesh that is being collapsed: flat triangles, and for every vertex the list of its triangles.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -74,6 +75,7 @@ class StarMesh {
 
     /// Fetches ahead: the vertex; then the list of its star; then its triangles.
     void prefetch_vertex(std::uint32_t v) const { fetch_ahead(&vertices_[v]); }
+    void prefetch_triangle(std::uint32_t t) const { fetch_ahead(&triangles_[t]); }
     void prefetch_star(std::uint32_t v) const { fetch_ahead(arena_.data() + vertices_[v].star_begin); }
     void prefetch_triangles(std::uint32_t v) const {
         if (vertices_[v].star_size > kLargeStar) return;
@@ -87,10 +89,22 @@ class StarMesh {
 
     /// Folds `child` into `parent`: triangles with both go, the child's others get the parent as corner
     /// (appended to `corners_changed` as 3 * triangle + corner), removed ones are appended to `removed`.
-    void fold(std::uint32_t child, std::uint32_t parent, std::vector<std::uint32_t>& corners_changed,
-              std::vector<std::uint32_t>& removed);
-    /// Takes out a whole component: its triangles and vertices.
-    void vanish(std::span<const std::uint32_t> vertices, std::span<const std::uint32_t> triangles);
+    /// May run at once for edges whose stars share no vertex, if there is room() for all of them. Returns how
+    /// many entries of the arena it took. live_triangles() and live_vertices() stay as they were until
+    /// lose().
+    std::size_t fold(std::uint32_t child, std::uint32_t parent, std::vector<std::uint32_t>& corners_changed,
+                     std::vector<std::uint32_t>& removed);
+    void lose(std::uint32_t vertices, std::uint32_t triangles) {
+        live_vertices_ -= vertices;
+        live_triangles_ -= triangles;
+    }
+    /// Makes room for `entries` more in the arena of stars: packs it if much of it is left over, else lets
+    /// it grow. A fold takes at most one for each triangle around its edge.
+    void make_room(std::size_t entries) {
+        if (arena_end_ + entries > arena_.size()) grow_room(entries);
+    }
+    /// Takes out the vertices of a whole component; its triangles are left as they are.
+    void vanish(std::span<const std::uint32_t> vertices);
 
     /// Index in the input of each vertex.
     const std::vector<std::uint32_t>& input_vertices() const { return input_vertices_; }
@@ -100,7 +114,10 @@ class StarMesh {
 
     std::vector<Vertex> vertices_;
     std::vector<Triangle> triangles_;
-    std::vector<std::uint32_t> arena_;
+    void grow_room(std::size_t entries);
+
+    std::vector<std::uint32_t> arena_;  // used up to arena_end_
+    std::uint32_t arena_end_ = 0;
     std::vector<std::uint32_t> input_vertices_;
     Double3 centre_;
     double scale_ = 1;
