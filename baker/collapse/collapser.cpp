@@ -40,7 +40,7 @@ CollapseState::CollapseState(const Mesh& input, const CollapseOptions& chosen)
       // Cost `paper` has no limit on the deviation that would hold back what turns a triangle far.
       strictness{chosen.cost == Cost::kPaper ? std::max(chosen.min_normal_cosine, kPaperCosine)
                                              : chosen.min_normal_cosine,
-                 chosen.min_quality, 60, true},
+                 chosen.min_quality, 60, true, true},
       histories(mesh.vertex_count()),
       targets(mesh.vertex_count()),
       slots(mesh.vertex_count() + std::size_t{components.count()}, kNoBucket) {}
@@ -68,6 +68,9 @@ Collapser::Collapser(const Mesh& mesh, const CollapseOptions& options)
                               state_.histories[v].witness = to_float(state_.mesh.position(v));
                           }
                       });
+    mark_folds();
+    for (std::uint32_t v = 0; v < state_.mesh.vertex_count(); ++v)
+        state_.area += double(state_.mesh.vertex(v).size) / 3;
     if (options.cost == Cost::kPaper) state_.paper = std::make_unique<PaperCost>(state_.mesh);
 }
 
@@ -99,6 +102,39 @@ void Collapser::lock() {
     }
 }
 
+void Collapser::mark_folds() {
+    StarMesh& mesh = state_.mesh;
+    tbb::enumerable_thread_specific<std::vector<std::uint32_t>> folded;
+    tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, mesh.vertex_count(), 4096),
+                      [&](const tbb::blocked_range<std::uint32_t>& range) {
+                          std::vector<std::uint32_t>& found = folded.local();
+                          for (std::uint32_t v = range.begin(); v < range.end(); ++v) {
+                              const auto star = mesh.star(v);
+                              if (star.size() > kLargeStar) continue;
+                              // Of two triangles that lie back on each other, one departs much from any
+                              // direction.
+                              const float* area = mesh.vertex(v).area;
+                              const Double3 mean{double(area[0]), double(area[1]), double(area[2])};
+                              const bool bends = std::any_of(star.begin(), star.end(), [&](std::uint32_t t) {
+                                  const Double3 n = mesh.normal(mesh.triangle(t));
+                                  const double along = dot(n, mean);
+                                  return along <= 0 || along * along < 0.1 * length2(n) * length2(mean);
+                              });
+                              if (!bends) continue;
+                              for (const std::uint32_t t : star)
+                                  for (const std::uint32_t other : star) {
+                                      const Triangle &a = mesh.triangle(t), &b = mesh.triangle(other);
+                                      const std::uint32_t next = a[0] == v ? a[1] : a[1] == v ? a[2] : a[0];
+                                      const std::uint32_t last = b[0] == v ? b[2] : b[1] == v ? b[0] : b[1];
+                                      if (last == next && is_folded(mesh.normal(a), mesh.normal(b)))
+                                          found.insert(found.end(), {a[0], a[1], a[2], b[0], b[1], b[2]});
+                                  }
+                          }
+                      });
+    for (const auto& found : folded)
+        for (const std::uint32_t v : found) mesh.vertex(v).folded = 1;
+}
+
 void Collapser::price_all() {
     tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, state_.mesh.vertex_count(), 2048),
                       [&](const tbb::blocked_range<std::uint32_t>& range) {
@@ -122,8 +158,11 @@ void Collapser::price_all() {
 
 std::pair<Bucket, Bucket> Collapser::next_window() const {
     std::vector<std::uint32_t> waiting(kBuckets, 0);
-    for (const Bucket slot : state_.slots)
-        if (slot != kNoBucket) ++waiting[slot];
+    const auto count_one = [&](std::uint32_t item) {
+        if (state_.slots[item] != kNoBucket) ++waiting[state_.slots[item]];
+    };
+    for (const std::uint32_t v : alive_) count_one(v);
+    for (std::uint32_t c = state_.mesh.vertex_count(); c < state_.slots.size(); ++c) count_one(c);
     Bucket begin = 0;
     while (begin < kBuckets && waiting[begin] == 0) ++begin;
     std::uint32_t count = 0;
@@ -146,10 +185,11 @@ bool Collapser::round(Bucket begin, Bucket end, std::uint64_t number, const Betw
     Region whole(state_);
     whole.open(0, vertices, begin, end);
     if (regions < 2) {
-        whole.line_up_all();
+        for (const std::uint32_t v : alive_)
+            if (state_.slots[v] < end) whole.line_up(v);
     } else {
         // Every other round, regions begin elsewhere.
-        constexpr std::size_t kRoom = std::size_t{3} * kRegionVertices;
+        constexpr std::size_t kRoom = std::size_t{3} * kRegionVertices / 2;
         state_.mesh.make_room((regions + 1) * kRoom);
         const std::uint32_t size = vertices / regions + 1, shift = number % 2 == 0 ? size : size / 2;
         std::vector<std::unique_ptr<Region>> parts(regions + 1);
@@ -162,7 +202,9 @@ bool Collapser::round(Bucket begin, Bucket end, std::uint64_t number, const Betw
                     parts[i] = std::make_unique<Region>(state_);
                     if (low == high) continue;
                     parts[i]->open(low, high, begin, end, kRoom);
-                    parts[i]->line_up_all();
+                    auto v = std::lower_bound(alive_.begin(), alive_.end(), low);
+                    for (; v != alive_.end() && *v < high; ++v)
+                        if (state_.slots[*v] < end) parts[i]->line_up(*v);
                     parts[i]->run([] { return true; });
                 }
             });
@@ -189,6 +231,8 @@ bool Collapser::round(Bucket begin, Bucket end, std::uint64_t number, const Betw
 bool Collapser::run(const Progress& progress) {
     StarMesh& mesh = state_.mesh;
     if (mesh.triangle_count() == 0) return true;
+    for (std::uint32_t v = 0; v < mesh.vertex_count(); ++v)
+        if (mesh.kind(v) != VertexKind::kDead) alive_.push_back(v);
     price_all();
     const double total = double(mesh.triangle_count());
     double said = 0;
@@ -201,7 +245,8 @@ bool Collapser::run(const Progress& progress) {
     };
     // Later passes get past what a guard stopped; the shape of the coarsest levels counts less than that
     // there is one.
-    const Strictness passes[] = {state_.strictness, {0.0, 1e-3, kHub, true}, {-0.2, 1e-5, 2 * kHub, true}};
+    const Strictness passes[] = {
+        state_.strictness, {0.0, 1e-3, kHub, false, true}, {-0.2, 1e-5, 2 * kHub, false, true}};
     std::uint64_t number = 0;
     for (const Strictness& strictness : passes) {
         state_.strictness = strictness;
@@ -214,8 +259,11 @@ bool Collapser::run(const Progress& progress) {
                 }
         }
         for (;; ++number) {
+            if (alive_.size() > 2 * std::size_t{mesh.live_vertices()})
+                std::erase_if(alive_, [&](std::uint32_t v) { return mesh.kind(v) == VertexKind::kDead; });
             const auto [begin, end] = next_window();
             if (begin == end) break;
+            state_.mean_star = 12 * state_.area / std::max(mesh.live_triangles(), 1u);
             if (!between() || !round(begin, end, number, between)) return false;
         }
     }
@@ -232,7 +280,8 @@ ProgressiveMesh Collapser::finish(CollapseReport& report) {
     report.stopped_by = state_.mesh.triangle_count() == 0
                             ? "there is nothing to collapse"
                             : "every remaining edge is fixed, or its collapse would change the topology";
-    // Only the mesh itself is needed from here on.
+    // Only the mesh itself is needed from here on, without its stars.
+    state_.mesh.drop_stars();
     std::vector<VertexHistory>().swap(state_.histories);
     std::vector<Target>().swap(state_.targets);
     state_.paper.reset();

@@ -25,6 +25,7 @@ class Collapser {
 
   private:
     void lock();
+    void mark_folds();
     void price_all();
     /// Collapses what waits in the window; false if `between` asked to stop.
     template <class Between>
@@ -35,6 +36,7 @@ class Collapser {
 
     CollapseState state_;
     Record record_;
+    std::vector<std::uint32_t> alive_;  // vertices, ascending; up to as many dead ones among them
     std::uint64_t vanished_ = 0;
     std::uint64_t unused_vertices_ = 0;
 };

@@ -58,6 +58,28 @@ bool Guards::keeps_topology(const EdgeStar& star) {
     return !(first_has && second_has);
 }
 
+bool Guards::folds_back(const EdgeStar& star, std::size_t i, Double3 normal, bool keeps_folds) const {
+    // Against the others of the new fan that it shares an edge with.
+    for (std::size_t j = 0; j < star.size; ++j) {
+        if (j == i || (star.a[j] != star.b[i] && star.b[j] != star.a[i])) continue;
+        const EdgeStar::Wings& other = star.wings[j / 4];
+        if (is_folded(normal, {other.after.x[j % 4], other.after.y[j % 4], other.after.z[j % 4]}))
+            return true;
+    }
+    // Against the triangle beyond.
+    for (const std::uint32_t t : mesh_.star(star.a[i])) {
+        const Triangle& c = mesh_.triangle(t);
+        const auto is_corner = [&](std::uint32_t v) { return c[0] == v || c[1] == v || c[2] == v; };
+        if (!is_corner(star.b[i]) || is_corner(star.u) || is_corner(star.v)) continue;
+        const Double3 beyond = mesh_.normal(c);
+        if (!is_folded(normal, beyond)) continue;
+        const EdgeStar::Wings& own = star.wings[i / 4];
+        const Double3 before{own.before.x[i % 4], own.before.y[i % 4], own.before.z[i % 4]};
+        if (!keeps_folds || !is_folded(before, beyond)) return true;
+    }
+    return false;
+}
+
 VSPLIT_CLONES bool Guards::keeps_shape(const EdgeStar& star, Double3 place,
                                        const std::vector<VertexHistory>& histories,
                                        const Strictness& strictness) const {
@@ -69,6 +91,7 @@ VSPLIT_CLONES bool Guards::keeps_shape(const EdgeStar& star, Double3 place,
     const double cosine = strictness.min_normal_cosine, cosine2 = cosine * cosine,
                  quality2 = strictness.min_quality * strictness.min_quality;
     const Lanes3 to = lanes(place);
+    const bool near_fold = mesh_.vertex(star.u).folded || mesh_.vertex(star.v).folded;
     for (std::size_t i = 0; i < star.wings.size(); ++i) {
         const EdgeStar::Wings& wing = star.wings[i];
         const Lanes before2 = length2(wing.before), after2 = length2(wing.after);
@@ -84,6 +107,13 @@ VSPLIT_CLONES bool Guards::keeps_shape(const EdgeStar& star, Double3 place,
         const LaneMask sliver = (12.0 * after2 < quality2 * edges * edges) &
                                 (after2 * edges_before * edges_before < before2 * edges * edges);
         if (any(~keeps_area | turns | sliver)) return false;
+        const LaneMask much = (turn < 0.0) | (turn2 < 0.8 * before2 * after2);
+        if (near_fold || any(much))
+            for (std::size_t k = 0; k < 4 && 4 * i + k < star.size; ++k)
+                if ((near_fold || much[k]) &&
+                    folds_back(star, 4 * i + k, {wing.after.x[k], wing.after.y[k], wing.after.z[k]},
+                               !strictness.mend_folds))
+                    return false;
         if (!strictness.keep_orientation) continue;
         const auto opposes = [&](const std::uint32_t* four) VSPLIT_INLINE_LAMBDA {
             alignas(32) Lanes normal[4];

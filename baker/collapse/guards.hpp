@@ -23,11 +23,18 @@ enum class Fold : std::uint8_t {
 /// By the kinds of the ends, and whether the edge is special.
 Fold fold_rule(const StarMesh& mesh, std::uint32_t u, std::uint32_t v);
 
+/// Two triangles of these normals, with a common edge, lie back on each other.
+inline bool is_folded(Double3 a, Double3 b) {
+    const double along = dot(a, b);
+    return along < 0 && along * along > 0.85 * 0.85 * length2(a) * length2(b);
+}
+
 /// How strict the guards are; later passes get past what stops the first.
 struct Strictness {
     double min_normal_cosine;
     double min_quality;
     std::size_t max_valence;
+    bool mend_folds;        ///< A triangle that lay back on another may change only if it does not after.
     bool keep_orientation;  ///< No triangle may oppose the input's normals around two of its corners.
 };
 
@@ -50,6 +57,10 @@ class Guards {
                      const Strictness& strictness) const;
 
   private:
+    /// Whether triangle `i` of the new fan, of this normal, lies back on one beside it. `keeps_folds`: those
+    /// that were there before do not count.
+    bool folds_back(const EdgeStar& star, std::size_t i, Double3 normal, bool keeps_folds) const;
+
     const StarMesh& mesh_;
     std::uint32_t low_ = 0;
     std::vector<std::uint32_t> stamps_;  // of low_ and up

@@ -47,11 +47,6 @@ void Region::open(std::uint32_t low, std::uint32_t high, Bucket begin, Bucket en
     vanished_ = 0;
 }
 
-void Region::line_up_all() {
-    for (std::uint32_t v = low_; v < high_; ++v)
-        if (state_.slots[v] < end_) queue_.line_up(v);
-}
-
 Target Region::best_of(std::uint32_t u) {
     list_edges(u, listed_);
     Target best;
@@ -92,12 +87,22 @@ Candidate Region::evaluate(std::uint32_t u, std::uint32_t v, Fold fold) const {
         return state_.paper->evaluate(mesh_, star, fold, state_.options.placement,
                                       double(mesh_.vertex(u).weight), double(mesh_.vertex(v).weight));
     }
+    const auto placed = [&](const EdgeQuadric<double>& edge) {
+        return fold == Fold::kIntoFirst                          ? edge.end(-1)
+               : fold == Fold::kIntoSecond                       ? edge.end(1)
+               : state_.options.placement == Placement::kOptimal ? edge.best()
+                                                                 : edge.better_end();
+    };
     const EdgeQuadric<double> edge(shape_of(mesh_, u), shape_of(mesh_, v), state_.options);
-    const auto placed = fold == Fold::kIntoFirst                          ? edge.end(-1)
-                        : fold == Fold::kIntoSecond                       ? edge.end(1)
-                        : state_.options.placement == Placement::kOptimal ? edge.best()
-                                                                          : edge.better_end();
-    return {edge.middle() + placed.place, edge.price(placed.cost)};
+    const auto at = placed(edge);
+    if (at.cost >= edge.noise()) return {edge.middle() + at.place, edge.price(at.cost)};
+    // Nearly flat: only the triangles themselves tell how nearly.
+    thread_local std::vector<Neighbour> scratch;
+    const double boundary = state_.options.boundary_weight;
+    const EdgeQuadric<double> exact(exact_shape(mesh_, u, boundary, scratch),
+                                    exact_shape(mesh_, v, boundary, scratch), state_.options);
+    const auto exact_at = placed(exact);
+    return {exact.middle() + exact_at.place, exact.price(exact_at.cost)};
 }
 
 void Region::price(std::uint32_t u, EdgeList& list) const {
@@ -109,7 +114,7 @@ void Region::price(std::uint32_t u, EdgeList& list) const {
     for (std::size_t i = 0; i < list.others.size(); ++i) {
         if (list.folds[i] == Fold::kNever)
             list.costs[i] = kNeverCost;
-        else if (!optimal || list.folds[i] != Fold::kAnywhere)
+        else if (!optimal || list.folds[i] != Fold::kAnywhere || list.costs[i] == kUnsurePrice)
             list.costs[i] = float(evaluate(u, list.others[i], list.folds[i]).cost);
     }
 }
@@ -147,10 +152,9 @@ Region::Outcome Region::attempt(std::uint32_t u, const Option& option, Bucket bu
     const Deviation deviation = deviation_of(star_, place, state_.histories);
     const double d = deviation.largest;
     const double weight = 0.5 * (double(mesh_.vertex(u).weight) + double(mesh_.vertex(option.other).weight));
-    // The same dimension as the cost, so that one factor serves every level: area^0.5 times distance^4.
-    const double size = double(mesh_.vertex(u).size) + double(mesh_.vertex(option.other).size);
+    // The same dimension as the cost, so that one factor serves every level: area times distance^3.
     const double limit =
-        state_.paper ? 0 : state_.options.deviation_limit * d * d * d * d * std::sqrt(size) * weight;
+        state_.paper ? 0 : state_.options.deviation_limit * d * d * d * state_.mean_star * weight;
     cost = float(std::max(option.candidate.cost, limit));
     if (bucket_of(cost) > bucket) return Outcome::kWaits;
     if (!is_whole()) {
@@ -190,6 +194,7 @@ void Region::apply(const EdgeStar& star, const Option& option, Float3 place, con
     history.deviation = deviation.at_place;
     history.witness = deviation.witness;
     Vertex& shape = mesh_.vertex(parent);
+    shape.folded |= mesh_.vertex(child).folded;
     shape.weight = 0.5f * (shape.weight + mesh_.vertex(child).weight);
     if (!state_.weights.empty())
         state_.weights[parent] = 0.5f * (state_.weights[parent] + state_.weights[child]);

@@ -50,6 +50,8 @@ struct CollapseState {
     Components components;
     std::unique_ptr<PaperCost> paper;
     Strictness strictness;
+    double area = 0;       ///< Of all triangles of the input; working units.
+    double mean_star = 0;  ///< Area around an edge of the mesh as it is now, if triangles were all alike.
     std::vector<VertexHistory> histories;
     std::vector<float> weights;   ///< Empty: none painted.
     std::vector<Target> targets;  ///< kNoVertex: list all again.
@@ -66,8 +68,7 @@ class Region {
     /// Gets ready for vertices `low` to `high` - 1 and costs of buckets `begin` to `end` - 1.
     /// May take `room` entries of the mesh's arena, which are there; the whole mesh makes its own room.
     void open(std::uint32_t low, std::uint32_t high, Bucket begin, Bucket end, std::size_t room = 0);
-    /// Lines up what waits within the window: all of the range; one item.
-    void line_up_all();
+    /// Lines up an item of the range that waits within the window.
     void line_up(std::uint32_t item) { queue_.line_up(item); }
     /// Collapses until nothing in the window waits. `between` is called now and then, and stops if false.
     template <class Between>

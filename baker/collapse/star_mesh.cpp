@@ -21,6 +21,9 @@ std::uint64_t spread(std::uint64_t x) {
     return (x | x << 2) & 0x1249249249249249u;
 }
 
+/// The arena's least growth, so that packing it, which looks at all vertices, stays rare.
+constexpr std::size_t kLeastRoom = 1 << 16;
+
 template <class Body>
 void parallel(std::size_t count, const Body& body) {
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 4096),
@@ -93,7 +96,7 @@ StarMesh::StarMesh(const Mesh& mesh) {
         v.star_size = 0;
     }
     // Stars that outgrow their place move to the end.
-    arena_.resize(begin + begin / 4);
+    arena_.resize(begin + begin / 4 + 2 * vertices);
     arena_end_ = begin;
     for (std::uint32_t t = 0; t < triangles_.size(); ++t)
         for (const std::uint32_t v : triangles_[t])
@@ -214,12 +217,12 @@ std::size_t StarMesh::fold(std::uint32_t child, std::uint32_t parent,
 void StarMesh::grow_room(std::size_t entries) {
     std::size_t used = 0;
     for (const Vertex& v : vertices_) used += v.star_size;
-    const std::size_t size = used + std::max(used / 4, entries);
+    const std::size_t more = used / 4 + entries + kLeastRoom;
     if (used + used / 8 > arena_end_) {
-        arena_.resize(arena_end_ + std::max(used / 4, entries));
+        arena_.resize(arena_end_ + more);
         return;
     }
-    std::vector<std::uint32_t> packed(size);
+    std::vector<std::uint32_t> packed(used + more);
     std::uint32_t end = 0;
     for (Vertex& v : vertices_) {
         std::copy_n(arena_.begin() + v.star_begin, v.star_size, packed.begin() + end);

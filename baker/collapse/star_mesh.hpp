@@ -103,6 +103,11 @@ class StarMesh {
     void make_room(std::size_t entries) {
         if (arena_end_ + entries > arena_.size()) grow_room(entries);
     }
+    /// Frees the lists of triangles, which are empty from then on.
+    void drop_stars() {
+        std::vector<std::uint32_t>().swap(arena_);
+        for (Vertex& v : vertices_) v.star_size = 0;
+    }
     /// Takes out the vertices of a whole component; its triangles are left as they are.
     void vanish(std::span<const std::uint32_t> vertices);
 

@@ -44,9 +44,9 @@ struct CollapseOptions {
     /// Pull toward the edge's middle, relative to the quadric's trace: what decides where the quadric does
     /// not.
     double regularisation = 1e-8;
-    /// A collapse waits until its cost reaches this times the fourth power of the deviation it makes (times
-    /// the root of the area of its triangles); 0 turns it off. Larger trades the mean error for the maximum.
-    double deviation_limit = 5;
+    /// A collapse waits until its cost reaches this times the third power of the deviation it makes, times
+    /// the mean area around an edge; 0 turns it off. Larger trades the mean error for the maximum.
+    double deviation_limit = 0.5;
     /// Guard: a triangle's normal may turn by at most the angle of this cosine in one collapse.
     double min_normal_cosine = 0.4;
     /// Guard: least quality 4 sqrt(3) area / (sum of squared edges) of a changed triangle, unless it was
@@ -80,7 +80,7 @@ struct CollapseResult {
 /// be sound (mesh_fault() null): anything else is kArgument. Weights of the mesh (painted; 1 if none)
 /// multiply the cost of their vertices, average on a collapse, and a vertex of infinite weight never moves
 /// nor goes. Vertices that no triangle uses are left out and counted. The result is the same for any number
-/// of threads. Works on up to 2^30 triangles; memory about 150 bytes a triangle.
+/// of threads. Works on up to 2^30 triangles; memory about 180 bytes a triangle.
 Result<CollapseResult> collapse(const Mesh& mesh, const CollapseOptions& options = {},
                                 const Progress& progress = {});
 
