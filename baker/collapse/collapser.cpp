@@ -33,9 +33,9 @@ Float3 to_float(Double3 p) {
 
 }  // namespace
 
-CollapseState::CollapseState(const Mesh& input, const CollapseOptions& chosen)
+CollapseState::CollapseState(StarMesh&& stars, const CollapseOptions& chosen)
     : options(chosen),
-      mesh(input),
+      mesh(std::move(stars)),
       components(mesh),
       // Cost `paper` has no limit on the deviation that would hold back what turns a triangle far.
       strictness{chosen.cost == Cost::kPaper ? std::max(chosen.min_normal_cosine, kPaperCosine)
@@ -45,8 +45,26 @@ CollapseState::CollapseState(const Mesh& input, const CollapseOptions& chosen)
       targets(mesh.vertex_count()),
       slots(mesh.vertex_count() + std::size_t{components.count()}, kNoBucket) {}
 
+CollapseState::CollapseState(const Mesh& source, const CollapseOptions& chosen)
+    : CollapseState(StarMesh(source), chosen) {}
+
+CollapseState::CollapseState(const PointMesh& points, const Mesh& input, const CollapseOptions& chosen)
+    : CollapseState(StarMesh(points.mesh, points.corners, points.groups), chosen) {
+    wedges = std::make_unique<WedgeValues>(input, chosen.attribute_weights);
+}
+
 Collapser::Collapser(const Mesh& mesh, const CollapseOptions& options)
     : state_(mesh, options), record_(!mesh.weights.empty()) {
+    prepare(mesh);
+}
+
+Collapser::Collapser(const PointMesh& points, const Mesh& input, const CollapseOptions& options)
+    : state_(points, input, options), input_(&input), record_(!input.weights.empty()) {
+    prepare(points.mesh);
+}
+
+void Collapser::prepare(const Mesh& mesh) {
+    const CollapseOptions& options = state_.options;
     unused_vertices_ = state_.mesh.vertex_count() - state_.mesh.live_vertices();
     if (!mesh.weights.empty()) {
         state_.weights.reserve(state_.mesh.vertex_count());
@@ -212,7 +230,11 @@ bool Collapser::round(Bucket begin, Bucket end, std::uint64_t number, const Betw
             for (const auto& part : parts) {
                 const auto& ends = part->ends();
                 const std::size_t at = std::size_t(bucket - begin);
-                if (at < ends.size()) record_.append(part->record(), at == 0 ? 0 : ends[at - 1], ends[at]);
+                if (at >= ends.size()) continue;
+                const std::size_t from = at == 0 ? 0 : ends[at - 1];
+                record_.append(part->record(), from, ends[at]);
+                if (input_)
+                    wedge_record_.append(part->wedge_record(), from, ends[at], state_.wedges->stride());
             }
         for (const auto& part : parts) {
             take(*part);
@@ -224,6 +246,7 @@ bool Collapser::round(Bucket begin, Bucket end, std::uint64_t number, const Betw
         if (state_.slots[c] < end) whole.line_up(c);
     if (!whole.run(between)) return false;
     record_.append(whole.record(), 0, whole.record().size());
+    if (input_) wedge_record_.append(whole.wedge_record(), 0, whole.record().size(), state_.wedges->stride());
     take(whole);
     return true;
 }
@@ -285,7 +308,9 @@ ProgressiveMesh Collapser::finish(CollapseReport& report) {
     std::vector<VertexHistory>().swap(state_.histories);
     std::vector<Target>().swap(state_.targets);
     state_.paper.reset();
-    ProgressiveMesh mesh = record_.finish(state_.mesh, state_.weights, nullptr);
+    ProgressiveMesh mesh = input_ ? finish_with_wedges(record_, wedge_record_, state_.mesh, *state_.wedges,
+                                                       *input_, state_.weights)
+                                  : record_.finish(state_.mesh, state_.weights, nullptr);
     // An error beyond the floats stays the largest of them, so that files hold finite numbers.
     const double unit = 1 / state_.mesh.scale();
     for (Split& split : mesh.splits)

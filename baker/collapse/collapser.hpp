@@ -16,6 +16,7 @@ namespace vsplit::bake {
 class Collapser {
   public:
     Collapser(const Mesh& mesh, const CollapseOptions& options);
+    Collapser(const PointMesh& points, const Mesh& input, const CollapseOptions& options);
 
     /// False if `progress` asked to stop.
     bool run(const Progress& progress);
@@ -24,6 +25,7 @@ class Collapser {
     ProgressiveMesh finish(CollapseReport& report);
 
   private:
+    void prepare(const Mesh& mesh);
     void lock();
     void mark_folds();
     void price_all();
@@ -35,7 +37,9 @@ class Collapser {
     void take(const Region& region);
 
     CollapseState state_;
+    const Mesh* input_ = nullptr;  // of a mesh with wedges
     Record record_;
+    WedgeRecord wedge_record_;
     std::vector<std::uint32_t> alive_;  // vertices, ascending; up to as many dead ones among them
     std::uint64_t vanished_ = 0;
     std::uint64_t unused_vertices_ = 0;

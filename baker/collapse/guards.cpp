@@ -10,13 +10,31 @@ namespace {
 /// The edge's triangles do not run along it once in each direction.
 bool is_special(const StarMesh& mesh, std::uint32_t u, std::uint32_t v) {
     int out = 0, in = 0;
+    bool seam = false;
+    std::uint32_t first = kNoVertex;
     for (const std::uint32_t t : mesh.star(u)) {
         const Triangle& c = mesh.triangle(t);
-        const int k = c[0] == u ? 0 : c[1] == u ? 1 : 2;
-        out += c[(k + 1) % 3] == v;
-        in += c[(k + 2) % 3] == v;
+        const std::size_t k = c[0] == u ? 0 : c[1] == u ? 1 : 2;
+        const std::size_t next = (k + 1) % 3, last = (k + 2) % 3;
+        out += c[next] == v;
+        in += c[last] == v;
+        if (!mesh.has_wedges() || (c[next] != v && c[last] != v)) continue;
+        if (first == kNoVertex) {
+            first = t;
+            continue;
+        }
+        const Triangle& other = mesh.triangle(first);
+        const std::size_t other_k = other[0] == u   ? 0
+                                    : other[1] == u ? 1
+                                                    : 2,
+                          other_v = other[0] == v   ? 0
+                                    : other[1] == v ? 1
+                                                    : 2;
+        seam |= mesh.corners(first)[other_k] != mesh.corners(t)[k] ||
+                mesh.corners(first)[other_v] != mesh.corners(t)[c[next] == v ? next : last] ||
+                mesh.group(first) != mesh.group(t);
     }
-    return out != 1 || in != 1;
+    return seam || out != 1 || in != 1;
 }
 
 }  // namespace
@@ -28,6 +46,9 @@ Fold fold_rule(const StarMesh& mesh, std::uint32_t u, std::uint32_t v) {
     if (ku != VertexKind::kInner && kv != VertexKind::kInner && !is_special(mesh, u, v)) return Fold::kNever;
     if (ku == VertexKind::kFixed) return Fold::kIntoFirst;
     if (kv == VertexKind::kFixed) return Fold::kIntoSecond;
+    // Onto a seam, but not with it: the other side's attributes belong to the place where it is.
+    if (ku != VertexKind::kInner && mesh.vertex(u).seam && kv == VertexKind::kInner) return Fold::kIntoFirst;
+    if (kv != VertexKind::kInner && mesh.vertex(v).seam && ku == VertexKind::kInner) return Fold::kIntoSecond;
     return Fold::kAnywhere;
 }
 

@@ -39,6 +39,7 @@ void Region::open(std::uint32_t low, std::uint32_t high, Bucket begin, Bucket en
     guards_.open(low, high);
     queue_.open(begin, end);
     record_ = Record(!state_.weights.empty());
+    wedge_record_ = {};
     put_off_.clear();
     ends_.clear();
     lost_vertices_ = lost_triangles_ = 0;
@@ -156,6 +157,13 @@ Region::Outcome Region::attempt(std::uint32_t u, const Option& option, Bucket bu
     const double limit =
         state_.paper ? 0 : state_.options.deviation_limit * d * d * d * state_.mean_star * weight;
     cost = float(std::max(option.candidate.cost, limit));
+    if (mesh_.has_wedges()) {
+        const std::uint32_t parent = parent_of(star_, option);
+        cost = kNeverCost;
+        if (!wedge_star_.gather(mesh_, star_, parent != u, parent == u)) return Outcome::kWaits;
+        cost = float(std::max(option.candidate.cost, limit) +
+                     weight * attribute_cost(mesh_, star_, wedge_star_, *state_.wedges, place));
+    }
     if (bucket_of(cost) > bucket) return Outcome::kWaits;
     if (!is_whole()) {
         if (star_.size > room_) return Outcome::kElsewhere;
@@ -170,19 +178,43 @@ Region::Outcome Region::attempt(std::uint32_t u, const Option& option, Bucket bu
     return Outcome::kDone;
 }
 
-void Region::apply(const EdgeStar& star, const Option& option, Float3 place, const Deviation& deviation) {
-    std::uint32_t parent = star.u, child = star.v;
-    const bool may_swap = option.fold == Fold::kAnywhere && mesh_.kind(star.u) == mesh_.kind(star.v);
-    if (option.fold == Fold::kIntoSecond ||
-        (option.fold == Fold::kAnywhere && mesh_.kind(star.v) == VertexKind::kCurve && !may_swap) ||
-        (may_swap && mesh_.star(star.v).size() > mesh_.star(star.u).size()))
-        std::swap(parent, child);
+std::uint32_t Region::parent_of(const EdgeStar& star, const Option& option) const {
+    if (option.fold == Fold::kIntoFirst) return star.u;
+    if (option.fold == Fold::kIntoSecond) return star.v;
+    // A curve's vertex stays; else the one with the larger star, since the other's corners change.
+    if (mesh_.kind(star.u) != mesh_.kind(star.v))
+        return mesh_.kind(star.v) == VertexKind::kCurve ? star.v : star.u;
+    return mesh_.star(star.v).size() > mesh_.star(star.u).size() ? star.v : star.u;
+}
 
+void Region::fold_wedges(const EdgeStar& star, std::uint32_t parent, Double3 place) {
+    const bool swapped = parent == star.u;  // pairs go from the first end to the second
+    wedge_record_.add(wedge_star_.pairs, swapped, wedge_star_.moved[swapped ? 0 : 1], *state_.wedges);
+    // All are mixed from what was there before any changes.
+    const std::size_t stride = state_.wedges->stride();
+    thread_local std::vector<float> mixed;
+    mixed.resize(stride * wedge_star_.pairs.size());
+    for (std::size_t i = 0; i < wedge_star_.pairs.size(); ++i)
+        mix_at(mesh_, star, wedge_star_.pairs[i], *state_.wedges, place,
+               std::span(mixed).subspan(stride * i, stride));
+    for (std::size_t i = 0; i < wedge_star_.pairs.size(); ++i) {
+        WedgePair& pair = wedge_star_.pairs[i];
+        if (swapped) std::swap(pair.child, pair.parent);
+        const auto from = std::span(mixed).subspan(stride * i, stride);
+        std::copy(from.begin(), from.end(), state_.wedges->of(pair.parent).begin());
+    }
+}
+
+void Region::apply(const EdgeStar& star, const Option& option, Float3 place, const Deviation& deviation) {
+    const std::uint32_t parent = parent_of(star, option), child = star.u + star.v - parent;
+    if (mesh_.has_wedges()) fold_wedges(star, parent, mesh_.work(place));
     const TrianglePart<double> part = update_ring(mesh_, star);
     const std::size_t before = record_.removed.size();
     const Float3 parent_position = mesh_.raw_position(parent);
     const float parent_weight = state_.weights.empty() ? 1 : state_.weights[parent];
-    const std::size_t taken = mesh_.fold(child, parent, record_.corners_changed, record_.removed);
+    const std::span<const WedgePair> pairs =
+        mesh_.has_wedges() ? wedge_star_.pairs : std::span<const WedgePair>{};
+    const std::size_t taken = mesh_.fold(child, parent, pairs, record_.corners_changed, record_.removed);
     room_ -= std::min(room_, taken);
     record_.add(child, parent, parent_position, parent_weight, float(deviation.largest));
     ++lost_vertices_;
@@ -347,6 +379,7 @@ void Region::process_component(std::uint32_t component, Bucket bucket) {
     lost_vertices_ += std::uint32_t(vertices.size());
     lost_triangles_ += std::uint32_t(triangles.size());
     record_.add_vanished(vertices, float(state_.components.reach(component)));
+    if (mesh_.has_wedges()) wedge_record_.add_vanished();
     state_.components.vanish(component);
     ++vanished_;
 }

@@ -18,6 +18,8 @@
 #include "record.hpp"
 #include "star_mesh.hpp"
 #include "vsplit/bake/collapse.hpp"
+#include "wedge_record.hpp"
+#include "wedges.hpp"
 
 namespace vsplit::bake {
 
@@ -44,10 +46,14 @@ struct Target {
 /// What all regions work on.
 struct CollapseState {
     CollapseState(const Mesh& mesh, const CollapseOptions& options);
+    /// Of a mesh with attributes or groups; `input` is the one that `points` was made of.
+    CollapseState(StarMesh&& stars, const CollapseOptions& options);
+    CollapseState(const PointMesh& points, const Mesh& input, const CollapseOptions& options);
 
     const CollapseOptions& options;
     StarMesh mesh;
     Components components;
+    std::unique_ptr<WedgeValues> wedges;  ///< Of a mesh with wedges.
     std::unique_ptr<PaperCost> paper;
     Strictness strictness;
     double area = 0;       ///< Of all triangles of the input; working units.
@@ -77,6 +83,7 @@ class Region {
     /// Items that were put off, with neighbours elsewhere.
     const std::vector<std::uint32_t>& put_off() const { return put_off_; }
     const Record& record() const { return record_; }
+    const WedgeRecord& wedge_record() const { return wedge_record_; }
     /// Where in the record the steps of each bucket of the window end.
     const std::vector<std::size_t>& ends() const { return ends_; }
     std::uint32_t lost_vertices() const { return lost_vertices_; }
@@ -131,8 +138,11 @@ class Region {
     void process_component(std::uint32_t component, Bucket bucket);
     /// kWaits sets `cost` to what it has to wait for (infinity: never as things are).
     Outcome attempt(std::uint32_t u, const Option& option, Bucket bucket, float& cost);
+    /// Which end stays.
+    std::uint32_t parent_of(const EdgeStar& star, const Option& option) const;
     void apply(const EdgeStar& star, const Option& option, Float3 place, const Deviation& deviation);
     /// After a collapse: prices the new vertex's edges, and offers them to those neighbours who own them.
+    void fold_wedges(const EdgeStar& star, std::uint32_t parent, Double3 place);
     void reprice(std::uint32_t parent, std::uint32_t child, Bucket now);
     void put_off(std::uint32_t u, Bucket bucket);
     void lose_of(std::uint32_t component, std::uint32_t triangles);
@@ -143,6 +153,7 @@ class Region {
     Guards guards_;
     BucketQueue queue_;
     Record record_;
+    WedgeRecord wedge_record_;
     std::uint32_t low_ = 0, high_ = 0;
     Bucket begin_ = 0, end_ = 0;
     std::size_t room_ = 0;
@@ -155,6 +166,7 @@ class Region {
     EdgeList listed_;
     std::vector<Neighbour> ring_;
     EdgeStar star_;
+    WedgeStar wedge_star_;
     EdgeList ring_edges_;  // of the new vertex
 };
 
