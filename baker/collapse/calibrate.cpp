@@ -26,6 +26,10 @@ constexpr double kLevelRatio = 0.7;
 /// Between two measured levels, the error is at least this share of the coarser one's, so that a jump between
 /// them is not missed by much.
 constexpr double kShareOfCoarser = 0.8;
+/// Where the error grows by more from one measured level to the next, one between is measured too; at most so
+/// many of them.
+constexpr double kJump = 2;
+constexpr std::size_t kMoreLevels = 16;
 /// Coarse levels look at the input's vertices in steps: the distance varies as slowly as their triangles are
 /// large.
 constexpr std::size_t kDensePass = 50000;
@@ -86,6 +90,61 @@ double star_distance2(const Mesh& mesh, const Stars& stars, std::uint32_t v, Dou
         least = std::min(
             least, distance2_to_triangle(p, to_double(mesh.positions[t[0]]), to_double(mesh.positions[t[1]]),
                                          to_double(mesh.positions[t[2]])));
+    }
+    return least;
+}
+
+/// The same around the vertex that is nearest to p among those reached by going from star to star, always
+/// nearer: where a surface is flat, vertices fold far away, and their ancestor's star does not cover them.
+double walked_distance2(const Mesh& mesh, const Stars& stars, std::uint32_t v, Double3 p, double enough2) {
+    double least = star_distance2(mesh, stars, v, p, enough2);
+    double here = length2(p - to_double(mesh.positions[v]));
+    for (int steps = 0; steps < 1000 && least > enough2; ++steps) {
+        std::uint32_t nearest = v;
+        const std::uint32_t end = std::min(stars.begin[v + 1], stars.begin[v] + kLookedAt);
+        for (std::uint32_t s = stars.begin[v]; s < end; ++s)
+            for (const std::uint32_t w : mesh.triangles[stars.triangles[s]])
+                if (const double there = length2(p - to_double(mesh.positions[w])); there < here) {
+                    here = there;
+                    nearest = w;
+                }
+        if (nearest == v) break;
+        v = nearest;
+        least = std::min(least, star_distance2(mesh, stars, v, p, enough2));
+    }
+    return least;
+}
+
+/// The same, and around all neighbours of the vertex where that ends, and on from the best of them: the
+/// nearest triangle is rarely farther from the nearest vertex. Slower.
+double searched_distance2(const Mesh& mesh, const Stars& stars, std::uint32_t v, Double3 p, double enough2) {
+    double least = std::numeric_limits<double>::infinity();
+    for (int steps = 0; steps < 100; ++steps) {
+        // To the vertex nearest to p.
+        double here = length2(p - to_double(mesh.positions[v]));
+        for (bool nearer = true; nearer;) {
+            nearer = false;
+            const std::uint32_t from = v;
+            for (std::uint32_t s = stars.begin[from]; s < stars.begin[from + 1]; ++s)
+                for (const std::uint32_t w : mesh.triangles[stars.triangles[s]])
+                    if (const double there = length2(p - to_double(mesh.positions[w])); there < here) {
+                        here = there;
+                        v = w;
+                        nearer = true;
+                    }
+        }
+        // The best star around it.
+        const double before = least;
+        std::uint32_t best = v;
+        least = std::min(least, star_distance2(mesh, stars, v, p, enough2));
+        for (std::uint32_t s = stars.begin[v]; s < stars.begin[v + 1] && least > enough2; ++s)
+            for (const std::uint32_t w : mesh.triangles[stars.triangles[s]])
+                if (const double there = star_distance2(mesh, stars, w, p, enough2); there < least) {
+                    least = there;
+                    best = w;
+                }
+        if (best == v || !(least < before) || least <= enough2) break;
+        v = best;
     }
     return least;
 }
@@ -214,8 +273,8 @@ class Calibrator {
                                   const std::uint32_t ancestor = ancestors[v];
                                   double bound2 = std::numeric_limits<double>::infinity();
                                   if (ancestor != kNoVertex)
-                                      bound2 = star_distance2(coarse, stars, ancestor,
-                                                              to_double(full_.positions[v]), enough2_);
+                                      bound2 = walked_distance2(coarse, stars, ancestor,
+                                                                to_double(full_.positions[v]), enough2_);
                                   probes[i] = {bound2, v};
                               }
                           });
@@ -227,7 +286,8 @@ class Calibrator {
         return farthest(probes, enough2_, [&](Probe& probe, double most) {
             return tree ? tree->closest(to_double(full_.positions[probe.index]), TriangleTree::kNoGuess, most)
                               .distance2
-                        : probe.bound2;
+                        : searched_distance2(coarse, stars, ancestors[probe.index],
+                                             to_double(full_.positions[probe.index]), most);
         });
     }
 
@@ -353,12 +413,34 @@ bool calibrate_errors(ProgressiveMesh& mesh, const Progress& progress) {
     std::vector<double> measured;
     {
         Calibrator calibrator(std::move(mesh));
-        for (const std::size_t level : levels) {
-            if (progress && !progress("measure errors", double(measured.size()) / double(levels.size())))
-                return false;
+        const std::size_t most = levels.size() + kMoreLevels;
+        const auto measure = [&](std::size_t level, double finer) {
             // Coarser levels are no nearer: what is below the last result need not be known exactly.
-            const double last = measured.empty() ? 0.0 : measured.back();
-            measured.push_back(std::max(last, kSafety * calibrator.measure(level, 0.5 / kSafety * last)));
+            return std::max(finer, kSafety * calibrator.measure(level, 0.5 / kSafety * finer));
+        };
+        std::size_t done = 0;
+        const auto goes_on = [&] {
+            return !progress || progress("measure errors", double(done++) / double(most));
+        };
+        for (const std::size_t level : levels) {
+            if (!goes_on()) return false;
+            measured.push_back(measure(level, measured.empty() ? 0.0 : measured.back()));
+        }
+        // More of them where the error jumps.
+        while (levels.size() < most) {
+            std::size_t at = 0;
+            double jump = kJump;
+            for (std::size_t i = 1; i < levels.size(); ++i)
+                if (levels[i - 1] - levels[i] > 1 && measured[i] > jump * measured[i - 1]) {
+                    jump = measured[i] / measured[i - 1];
+                    at = i;
+                }
+            if (at == 0) break;
+            if (!goes_on()) return false;
+            const std::size_t level = levels[at] + (levels[at - 1] - levels[at]) / 2;
+            const double result = std::min(measure(level, measured[at - 1]), measured[at]);
+            levels.insert(levels.begin() + std::ptrdiff_t(at), level);
+            measured.insert(measured.begin() + std::ptrdiff_t(at), result);
         }
         mesh = calibrator.release();
     }

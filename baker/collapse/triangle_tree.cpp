@@ -40,7 +40,7 @@ struct Bounds {
 
 }  // namespace
 
-TriangleTree::TriangleTree(const Mesh& mesh) {
+TriangleTree::TriangleTree(const Mesh& mesh) : mesh_(mesh) {
     const std::size_t count = mesh.triangles.size();
     std::vector<Box> boxes(count);
     for (std::size_t i = 0; i < count; ++i) {
@@ -80,9 +80,6 @@ TriangleTree::TriangleTree(const Mesh& mesh) {
         open.push_back({child, range.depth + 1});
         open.push_back({child + 1, range.depth + 1});
     }
-    triangles_.resize(count);
-    for (std::size_t i = 0; i < count; ++i)
-        for (std::size_t k = 0; k < 3; ++k) triangles_[i][k] = mesh.positions[mesh.triangles[order_[i]][k]];
 }
 
 /// Sets the node's box; returns the bounds of the centres.
@@ -157,7 +154,8 @@ double TriangleTree::box_distance2(const Node& node, Double3 p) const {
 }
 
 double TriangleTree::distance2(std::uint32_t slot, Double3 p) const {
-    const auto& t = triangles_[slot];
+    const Triangle& c = mesh_.triangles[order_[slot]];
+    const Float3 t[3] = {mesh_.positions[c[0]], mesh_.positions[c[1]], mesh_.positions[c[2]]};
     return distance2_to_triangle(p, to_double(t[0]), to_double(t[1]), to_double(t[2]));
 }
 
@@ -168,7 +166,7 @@ TriangleTree::Hit TriangleTree::closest(Double3 point, std::uint32_t guess, doub
     };
     Entry stack[kStack];
     int size = 0;
-    std::uint32_t slot = guess < triangles_.size() ? guess : 0;
+    std::uint32_t slot = guess < order_.size() ? guess : 0;
     double best = distance2(slot, point);
     stack[size++] = {0, box_distance2(nodes_[0], point)};
     while (size && best > enough2) {

@@ -14,7 +14,7 @@
 
 namespace vsplit::bake {
 
-/// Owns a copy of the triangles' corners; queries are const and may run at once.
+/// Refers to the mesh, which must stay as it is; queries are const and may run at once.
 class TriangleTree {
   public:
     static constexpr std::uint32_t kNoGuess = 0xFFFFFFFFu;
@@ -52,8 +52,8 @@ class TriangleTree {
     double distance2(std::uint32_t slot, Double3 p) const;
 
     std::vector<Node> nodes_;
-    std::vector<std::uint32_t> order_;              ///< Leaf order -> mesh order.
-    std::vector<std::array<Float3, 3>> triangles_;  ///< In leaf order.
+    std::vector<std::uint32_t> order_;  ///< Leaf order -> mesh order.
+    const Mesh& mesh_;
 };
 
 }  // namespace vsplit::bake
