@@ -24,6 +24,8 @@ struct GltfOptions {
     std::string weight_channel;
     /// Of all instances together; more: kLimit. A few nodes can repeat a mesh without end.
     std::uint64_t max_triangles = std::uint64_t{1} << 26;
+    /// Floats in all attributes together; more: kLimit. Only parse_scene reads attributes.
+    std::uint64_t max_attribute_values = std::uint64_t{1} << 30;
 };
 
 /// All triangle primitives (lists, strips, fans) of the default scene (the first one if none is called so,
