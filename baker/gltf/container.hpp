@@ -9,7 +9,9 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "vsplit/result.hpp"
 
@@ -26,5 +28,8 @@ struct GltfContainer {
 /// Checks magic, version, declared lengths and chunk order; hostile bytes are safe. A file that does not
 /// begin like a GLB is taken for JSON text.
 Result<GltfContainer> open_container(std::span<const std::byte> bytes);
+
+/// A GLB of this JSON text and this BIN chunk (none if it is empty). kLimit above 4 GiB.
+Result<std::vector<std::byte>> seal_container(std::string json, std::span<const std::byte> bin);
 
 }  // namespace vsplit::bake

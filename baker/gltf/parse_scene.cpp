@@ -140,6 +140,46 @@ class SceneReader {
     }
     bool any_weights() const { return any_weights_; }
 
+    void measure(const SceneUse& use) {
+        struct Box {
+            double least[3], most[3];
+            Box() {
+                std::fill(least, least + 3, std::numeric_limits<double>::infinity());
+                std::fill(most, most + 3, -std::numeric_limits<double>::infinity());
+            }
+            void add(std::size_t c, double value) {
+                least[c] = std::min(least[c], value);
+                most[c] = std::max(most[c], value);
+            }
+        };
+        std::vector<Box> boxes(use.mesh_used.size());
+        for (const ScenePart& part : scene.parts)
+            for (std::uint32_t v = part.first_vertex; v < part.end_vertex; ++v) {
+                const Float3& p = scene.mesh.positions[v];
+                const double xyz[3] = {double(p.x), double(p.y), double(p.z)};
+                for (std::size_t c = 0; c < 3; ++c)
+                    boxes[part.mesh].add(c, std::ldexp(xyz[c], -part.exponent));
+            }
+        Box world;
+        for (const SceneUse::Place& place : use.places) {
+            const Box& box = boxes[place.mesh];
+            for (std::size_t corner = 0; corner < 8; ++corner)
+                for (std::size_t c = 0; c < 3; ++c) {
+                    const auto side = [&](std::size_t axis) {
+                        return (corner >> axis & 1) != 0 ? box.most[axis] : box.least[axis];
+                    };
+                    const Matrix& m = place.matrix;
+                    const double value = m[c] * side(0) + m[4 + c] * side(1) + m[8 + c] * side(2) + m[12 + c];
+                    if (std::isfinite(value)) world.add(c, value);
+                }
+        }
+        double square = 0;
+        for (std::size_t c = 0; c < 3; ++c)
+            if (world.most[c] > world.least[c])
+                square += (world.most[c] - world.least[c]) * (world.most[c] - world.least[c]);
+        scene.radius = 0.5 * std::sqrt(square);
+    }
+
   private:
     struct Part {
         std::uint32_t mesh;
@@ -313,6 +353,7 @@ Result<Scene> read_whole(std::span<const std::byte> bytes, const std::string& fo
         return fault(ErrorCode::kArgument,
                      "no primitive of the scene has the weight channel " + options.weight_channel +
                          "; its attributes are " + attributes_there(document->model));
+    reader.measure(*use);
     Scene scene = std::move(reader.scene);
     auto remains = remaining_document(bytes, *document, folder, *use, reader.taken, scene.notes);
     if (!remains.ok()) return remains.error();

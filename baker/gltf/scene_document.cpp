@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <functional>
 
+#include "accessor.hpp"
 #include "buffers.hpp"
 #include "container.hpp"
 
@@ -154,6 +155,7 @@ class Remains {
         for (const char* name : {"KHR_draco_mesh_compression", "EXT_meshopt_compression"})
             if (!still_there(name)) forget_extension(out.root, name);
         embed_images(folder, notes);
+        read_skins();
         out.root.erase("buffers");
         return Ok{};
     }
@@ -303,6 +305,24 @@ class Remains {
             image["mimeType"] = type;
             image["bufferView"] = number;
         });
+    }
+
+    void read_skins() {
+        for (const tinygltf::Skin& skin : document_.model.skins) {
+            std::vector<float> matrices(skin.joints.size() * 16, 0.0f);
+            Result<AccessorReader> source = Error{};
+            if (skin.inverseBindMatrices >= 0)
+                source = AccessorReader::open(document_, skin.inverseBindMatrices, "inverseBindMatrices");
+            const bool given = source.ok() && source->type() == TINYGLTF_TYPE_MAT4;
+            for (std::size_t j = 0; j < skin.joints.size(); ++j) {
+                const auto matrix = std::span(matrices).subspan(16 * j, 16);
+                if (given && j < source->count())
+                    source->read(j, matrix);
+                else
+                    matrix[0] = matrix[5] = matrix[10] = matrix[15] = 1;
+            }
+            out.inverse_bind.push_back(std::move(matrices));
+        }
     }
 
     Document& document_;

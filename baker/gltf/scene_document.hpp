@@ -34,6 +34,8 @@ struct KeptView {
 struct SceneDocument {
     OrderedJson root;
     std::map<std::size_t, KeptView> views;
+    /// Per skin its matrices, column by column, 16 floats a joint; identity where the document has none.
+    std::vector<std::vector<float>> inverse_bind;
 };
 
 /// The triangle primitives that are taken out, as mesh and primitive.

@@ -52,9 +52,16 @@ std::vector<std::uint8_t> below(const tinygltf::Model& model, std::vector<std::s
     return reached;
 }
 
-/// How much the skin's largest joint scales a vertex in its bind pose.
-double skin_scale(Document& document, const tinygltf::Skin& skin, const std::vector<Matrix>& world) {
-    double most = 0;
+struct BindPose {
+    bool known = false;
+    double scale = 0;  // of the largest joint
+    Matrix first = kIdentity;
+};
+
+/// How a skin's joints transform a vertex in its bind pose.
+BindPose bind_pose(Document& document, const tinygltf::Skin& skin, const std::vector<Matrix>& world) {
+    BindPose pose;
+    pose.known = true;
     const int number = skin.inverseBindMatrices;
     Result<AccessorReader> inverse = Error{};
     if (number >= 0) inverse = AccessorReader::open(document, number, "inverseBindMatrices");
@@ -66,10 +73,12 @@ double skin_scale(Document& document, const tinygltf::Skin& skin, const std::vec
             inverse->read(j, values);
             std::copy(std::begin(values), std::end(values), bind.begin());
         }
-        const double scale = largest_scale(product(world[std::size_t(skin.joints[j])], bind));
-        if (std::isfinite(scale)) most = std::max(most, scale);
+        const Matrix matrix = product(world[std::size_t(skin.joints[j])], bind);
+        if (j == 0) pose.first = matrix;
+        const double scale = largest_scale(matrix);
+        if (std::isfinite(scale)) pose.scale = std::max(pose.scale, scale);
     }
-    return most;
+    return pose;
 }
 
 }  // namespace
@@ -98,7 +107,7 @@ Result<SceneUse> survey_nodes(Document& document) {
 
     use.mesh_used.assign(model.meshes.size(), 0);
     use.mesh_scale.assign(model.meshes.size(), 0);
-    std::vector<double> skins(model.skins.size(), -1);
+    std::vector<BindPose> skins(model.skins.size());
     for (std::size_t n = 0; n < count; ++n) {
         const tinygltf::Node& node = model.nodes[n];
         if (node.mesh < 0 || use.only_lod[n] != 0) continue;
@@ -106,11 +115,13 @@ Result<SceneUse> survey_nodes(Document& document) {
         use.mesh_used[mesh] = 1;
         double scale = 0;
         if (node.skin >= 0) {
-            double& known = skins[std::size_t(node.skin)];
-            if (known < 0) known = skin_scale(document, model.skins[std::size_t(node.skin)], *world);
-            scale = known;
+            BindPose& pose = skins[std::size_t(node.skin)];
+            if (!pose.known) pose = bind_pose(document, model.skins[std::size_t(node.skin)], *world);
+            scale = pose.scale;
+            use.places.push_back({mesh, pose.first});
         } else {
             scale = largest_scale((*world)[n]);
+            use.places.push_back({mesh, (*world)[n]});
         }
         if (std::isfinite(scale)) use.mesh_scale[mesh] = std::max(use.mesh_scale[mesh], scale);
     }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "document.hpp"
+#include "transforms.hpp"
 #include "vsplit/result.hpp"
 
 namespace vsplit::bake {
@@ -15,6 +16,11 @@ namespace vsplit::bake {
 struct SceneUse {
     std::vector<std::uint8_t> mesh_used;  ///< Per mesh: by a node that is no mere coarser level.
     std::vector<double> mesh_scale;       ///< Per mesh, of its largest place; 0 if it has none.
+    struct Place {
+        std::size_t mesh;
+        Matrix matrix;
+    };
+    std::vector<Place> places;  ///< Of the meshes used; of a skinned one, where its first joint puts it.
     /// Per node: reached only as, or below, a coarser level of another one (MSFT_lod).
     std::vector<std::uint8_t> only_lod;
 };

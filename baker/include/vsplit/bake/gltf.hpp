@@ -38,6 +38,13 @@ struct GltfOptions {
 Result<MeshFile> parse_gltf(std::span<const std::byte> bytes, const std::string& folder,
                             const GltfOptions& options = {});
 
+/// The screen (16:9) for which switching distances are computed, and how many of its pixels a level's error may
+/// span while it is shown.
+struct Screen {
+    double lines = 1080;
+    double pixels = 1;
+};
+
 /// One level of detail.
 struct GltfLevel {
     Mesh mesh;
@@ -48,6 +55,6 @@ struct GltfLevel {
 /// (docs/lods.md has the formula). Smooth vertex normals are computed; painted weights travel as the
 /// attribute _WEIGHT. Passes the Khronos validator without errors or warnings. Errors: kArgument for no level
 /// or an empty mesh.
-Result<std::vector<std::byte>> encode_glb(std::span<const GltfLevel> levels);
+Result<std::vector<std::byte>> encode_glb(std::span<const GltfLevel> levels, const Screen& screen = {});
 
 }  // namespace vsplit::bake

@@ -59,6 +59,7 @@ struct Scene {
     std::vector<std::uint32_t> part_of;  ///< Per vertex of `mesh`, its number in `parts`.
     std::vector<ScenePart> parts;
     std::vector<ScenePrimitive> primitives;
+    double radius = 0;  ///< Of a ball around all places of all parts, in the world. About right for skinned ones.
     MeshReport report;
     std::vector<std::string> notes;  ///< What was met and not carried along, for people.
     std::shared_ptr<const SceneDocument> document;
@@ -79,6 +80,7 @@ struct SceneFormat {
     /// Levels share the vertices of the finest and differ in indices only: kArgument unless each vertex has
     /// the same values at every level.
     bool shared_vertices = false;
+    Screen screen;
 };
 
 /// A GLB of the scene with its triangles replaced by the levels', finest first: one level as it is, several

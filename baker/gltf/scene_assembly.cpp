@@ -1,0 +1,286 @@
+// SPDX-FileCopyrightText: 2026 The vsplit authors
+// SPDX-License-Identifier: MIT
+#include "scene_assembly.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <set>
+
+#include "container.hpp"
+#include "coverage.hpp"
+
+namespace vsplit::bake {
+namespace {
+
+constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
+
+Error fault(std::string message) {
+    return {ErrorCode::kArgument, std::move(message), Error::kNowhere, 0};
+}
+
+/// The mesh's primitives in the document, those of triangles emptied.
+OrderedJson& primitives_of(OrderedJson& mesh) {
+    return mesh["primitives"];
+}
+
+}  // namespace
+
+Status check_scene_levels(const Scene& scene, std::span<const GltfLevel> levels) {
+    if (scene.document == nullptr) return fault("the scene has no document");
+    if (levels.empty()) return fault("no level of detail to write");
+    for (std::size_t k = 0; k < levels.size(); ++k) {
+        const Mesh& mesh = levels[k].mesh;
+        const std::string name = "level " + std::to_string(k);
+        if (const char* what = mesh_fault(mesh)) return fault(name + ": " + what);
+        if (!(levels[k].error >= 0) || !std::isfinite(levels[k].error))
+            return fault(name + ": its error is no distance");
+        bool same = mesh.attributes.size() == scene.mesh.attributes.size();
+        for (std::size_t a = 0; same && a < mesh.attributes.size(); ++a)
+            same = mesh.attributes[a].name == scene.mesh.attributes[a].name &&
+                   mesh.attributes[a].components == scene.mesh.attributes[a].components;
+        if (!same) return fault(name + " has other attributes than the scene");
+        if (mesh.groups.empty() && scene.primitives.size() > 1) return fault(name + " has no groups");
+        for (const std::uint32_t group : mesh.groups)
+            if (group >= scene.primitives.size())
+                return fault(name + " has a group that the scene does not have");
+    }
+    return Ok{};
+}
+
+SceneAssembly::SceneAssembly(const Scene& scene, const SceneFormat& format)
+    : scene_(scene), format_(format), root_(scene.document->root), sink_(root_, format.meshopt),
+      nodes_(root_), writer_(scene, format, sink_) {}
+
+/// Meshes that a skin moves share a grid with all meshes of that skin, since the grid goes into its
+/// matrices; meshes that are instanced on the GPU have no place for one.
+void SceneAssembly::choose_grids(std::span<const GltfLevel> levels) {
+    writer_.set_boxes(levels);
+    if (!format_.quantised) return;
+    const OrderedJson& nodes = root_["nodes"];
+    const std::size_t skins = root_.contains("skins") ? root_["skins"].size() : 0;
+    std::vector<std::size_t> leader(scene_.parts.size() + skins);
+    for (std::size_t i = 0; i < leader.size(); ++i) leader[i] = i;
+    const auto find = [&](std::size_t i) {
+        while (leader[i] != i) i = leader[i] = leader[leader[i]];
+        return i;
+    };
+    std::set<std::size_t> barred;
+    for (std::size_t p = 0; p < scene_.parts.size(); ++p)
+        for (const std::size_t n : nodes_.users(scene_.parts[p].mesh)) {
+            if (const OrderedJson* skin = member(nodes[n], "skin"))
+                leader[find(p)] = find(scene_.parts.size() + skin->get<std::size_t>());
+            if (nodes_.instanced(n)) barred.insert(p);
+        }
+    std::map<std::size_t, Grid> grids;
+    for (std::size_t p = 0; p < scene_.parts.size(); ++p) {
+        const auto& box = writer_.box(scene_.parts[p].mesh);
+        if (!box) continue;
+        const auto [at, fresh] = grids.try_emplace(find(p), *box);
+        if (fresh) continue;
+        Grid& grid = at->second;
+        double scale = std::max(grid.scale, box->scale);
+        for (std::size_t c = 0; c < 3; ++c) {
+            const double least = std::min(grid.offset[c], box->offset[c]);
+            scale = std::max({scale, grid.offset[c] + grid.scale - least, box->offset[c] + box->scale - least});
+            grid.offset[c] = least;
+        }
+        grid.scale = scale;
+    }
+    for (const std::size_t p : barred) grids.erase(find(p));
+    // Viewers hold node transforms as floats.
+    for (auto& [group, grid] : grids) {
+        for (double& x : grid.offset) x = double(float(x));
+        grid.scale = double(std::nextafter(float(grid.scale * (1 + 1e-6)), INFINITY));
+    }
+    for (std::size_t p = 0; p < scene_.parts.size(); ++p)
+        if (const auto grid = grids.find(find(p)); grid != grids.end())
+            writer_.quantise(scene_.parts[p].mesh, grid->second);
+    for (std::size_t p = 0; p < scene_.parts.size(); ++p)
+        if (const auto grid = grids.find(find(p)); grid != grids.end())
+            for (const std::size_t n : nodes_.users(scene_.parts[p].mesh))
+                nodes_.apply_grid(n, grid->second);
+    for (std::size_t s = 0; s < skins; ++s)
+        if (const auto grid = grids.find(find(scene_.parts.size() + s)); grid != grids.end())
+            quantise_skin(s, grid->second);
+}
+
+void SceneAssembly::quantise_skin(std::size_t skin, const Grid& grid) {
+    OrderedJson& object = root_["skins"][skin];
+    std::vector<float> matrices = scene_.document->inverse_bind[skin];
+    for (std::size_t j = 0; j + 16 <= matrices.size(); j += 16) {
+        float* m = matrices.data() + j;
+        for (std::size_t row = 0; row < 4; ++row) {
+            double moved = double(m[12 + row]);
+            for (std::size_t c = 0; c < 3; ++c) moved += double(m[4 * c + row]) * grid.offset[c];
+            for (std::size_t c = 0; c < 3; ++c) m[4 * c + row] = float(double(m[4 * c + row]) * grid.scale);
+            m[12 + row] = float(moved);
+        }
+    }
+    object["inverseBindMatrices"] = sink_.add_matrices(matrices);
+}
+
+double SceneAssembly::radius_of(const Mesh& mesh, std::size_t document_mesh) const {
+    double least[3], most[3];
+    std::fill(least, least + 3, std::numeric_limits<double>::infinity());
+    std::fill(most, most + 3, -std::numeric_limits<double>::infinity());
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        if (scene_.primitives[mesh.groups.empty() ? 0 : mesh.groups[t]].mesh != document_mesh) continue;
+        for (const std::uint32_t v : mesh.triangles[t]) {
+            const float p[3] = {mesh.positions[v].x, mesh.positions[v].y, mesh.positions[v].z};
+            for (std::size_t c = 0; c < 3; ++c) {
+                least[c] = std::min(least[c], double(p[c]));
+                most[c] = std::max(most[c], double(p[c]));
+            }
+        }
+    }
+    double square = 0;
+    for (std::size_t c = 0; c < 3; ++c)
+        if (most[c] > least[c]) square += (most[c] - least[c]) * (most[c] - least[c]);
+    return 0.5 * std::sqrt(square);
+}
+
+/// All levels name vertices of the first, which keeps those that any level names.
+Status SceneAssembly::share_vertices(std::span<const GltfLevel> levels) {
+    const Mesh& finest = levels[0].mesh;
+    for (std::size_t k = 1; k < levels.size(); ++k) {
+        const Mesh& mesh = levels[k].mesh;
+        const std::string name = "level " + std::to_string(k);
+        bool same = mesh.positions.size() <= finest.positions.size() &&
+                    std::memcmp(mesh.positions.data(), finest.positions.data(),
+                                mesh.positions.size() * sizeof(Float3)) == 0;
+        for (std::size_t a = 0; same && a < mesh.attributes.size(); ++a)
+            same = std::memcmp(mesh.attributes[a].values.data(), finest.attributes[a].values.data(),
+                               mesh.attributes[a].values.size() * sizeof(float)) == 0;
+        if (!same)
+            return fault(name + " has vertices of its own: levels share them only where every vertex stays "
+                                "at its place (placement endpoint)");
+    }
+    for (std::size_t g = 0; g < scene_.primitives.size(); ++g) {
+        std::vector<std::uint32_t> all;
+        for (const auto& level : cuts_)
+            all.insert(all.end(), level[g].vertices.begin(), level[g].vertices.end());
+        std::sort(all.begin(), all.end());
+        all.erase(std::unique(all.begin(), all.end()), all.end());
+        for (auto& level : cuts_) {
+            PrimitiveCut& cut = level[g];
+            if (cut.corners.empty()) continue;
+            for (std::uint32_t& v : cut.corners)
+                v = std::uint32_t(std::lower_bound(all.begin(), all.end(), cut.vertices[v]) - all.begin());
+            cut.vertices = all;
+        }
+    }
+    return Ok{};
+}
+
+Status SceneAssembly::write_meshes(std::span<const GltfLevel> levels) {
+    for (const GltfLevel& level : levels)
+        cuts_.push_back(split_by_group(level.mesh, scene_.primitives.size()));
+    if (format_.shared_vertices) {
+        if (Status status = share_vertices(levels); !status.ok()) return status;
+    } else if (format_.meshopt) {
+        for (auto& level : cuts_)
+            for (PrimitiveCut& cut : level)
+                if (!cut.corners.empty()) order_for_cache(cut);
+    }
+    OrderedJson& meshes = root_["meshes"];
+    shown_at_.assign(scene_.primitives.size(), -1);
+    mesh_at_.assign(scene_.parts.size(), std::vector<std::size_t>(levels.size(), kNone));
+    // By level, then by part, so that a viewer that wants one level reads one range.
+    std::vector<OrderedJson> templates;
+    for (const ScenePart& part : scene_.parts) templates.push_back(std::move(meshes[part.mesh]));
+    for (const ScenePart& part : scene_.parts) meshes[part.mesh] = nullptr;
+    for (std::size_t k = 0; k < levels.size(); ++k)
+        for (std::size_t p = 0; p < scene_.parts.size(); ++p) {
+            OrderedJson mesh = templates[p];
+            OrderedJson& all = primitives_of(mesh);
+            std::vector<std::size_t> group_of(all.size(), kNone);
+            for (std::size_t g = 0; g < scene_.primitives.size(); ++g)
+                if (scene_.primitives[g].mesh == scene_.parts[p].mesh)
+                    group_of[scene_.primitives[g].primitive] = g;
+            OrderedJson kept = OrderedJson::array();
+            for (std::size_t i = 0; i < all.size(); ++i) {
+                const std::size_t g = group_of[i];
+                if (g != kNone) {
+                    const PrimitiveCut& cut = cuts_[k][g];
+                    if (cut.corners.empty()) continue;
+                    OrderedJson primitive = OrderedJson::object();
+                    if (Status status = writer_.write(levels[k].mesh, g, cut, primitive); !status.ok())
+                        return status;
+                    for (auto& [key, value] : all[i].items())
+                        if (key == "extensions")
+                            primitive[key].update(value);
+                        else
+                            primitive[key] = value;
+                    if (k == 0) shown_at_[g] = int(kept.size());
+                    kept.push_back(std::move(primitive));
+                } else {
+                    kept.push_back(all[i]);
+                }
+            }
+            if (kept.empty()) continue;
+            all = std::move(kept);
+            if (k == 0) {
+                meshes[scene_.parts[p].mesh] = std::move(mesh);
+                mesh_at_[p][0] = scene_.parts[p].mesh;
+                continue;
+            }
+            if (OrderedJson* name = member(mesh, "name"); name != nullptr && name->is_string())
+                *name = name->get_ref<const std::string&>() + "_LOD" + std::to_string(k);
+            mesh_at_[p][k] = meshes.size();
+            meshes.push_back(std::move(mesh));
+        }
+    return Ok{};
+}
+
+void SceneAssembly::place_levels(std::span<const GltfLevel> levels) {
+    for (std::size_t p = 0; p < scene_.parts.size(); ++p) {
+        const auto& at = mesh_at_[p];
+        const auto users = nodes_.users(scene_.parts[p].mesh);
+        if (at[0] == kNone) {
+            for (const std::size_t n : users) nodes_.take_mesh(n);
+            continue;
+        }
+        // Levels until the part vanishes, and where it does the distance at which it may.
+        std::vector<double> errors;
+        std::vector<std::size_t> meshes;
+        bool vanishes = false;
+        for (std::size_t k = 0; k < levels.size() && !vanishes; ++k) {
+            errors.push_back(levels[k].error);
+            vanishes = at[k] == kNone;
+            if (k > 0 && !vanishes) meshes.push_back(at[k]);
+        }
+        const double radius = radius_of(levels[0].mesh, scene_.parts[p].mesh);
+        std::vector<double> coverage = screen_coverage(errors, radius, format_.screen);
+        if (vanishes) coverage.pop_back();
+        for (const std::size_t n : users) nodes_.add_levels(n, meshes, coverage);
+    }
+}
+
+Status SceneAssembly::add_levels(std::span<const GltfLevel> levels) {
+    choose_grids(levels);
+    if (Status status = write_meshes(levels); !status.ok()) return status;
+    place_levels(levels);
+    nodes_.drop_missing_meshes();
+    if (writer_.beyond_core()) use_extension(root_, "KHR_mesh_quantization", true);
+    if (format_.draco) use_extension(root_, "KHR_draco_mesh_compression", true);
+    return Ok{};
+}
+
+void SceneAssembly::add_kept() {
+    for (const bool images : {false, true})
+        for (const auto& [number, view] : scene_.document->views)
+            if (view.image == images) sink_.keep_view(number, view);
+}
+
+Result<std::vector<std::byte>> SceneAssembly::finish() {
+    sink_.finish();
+    for (const char* key : {"nodes", "scenes", "materials", "images", "textures", "samplers", "skins",
+                            "animations", "cameras", "meshes"})
+        if (const OrderedJson* array = member(root_, key); array != nullptr && array->is_array() && array->empty())
+            root_.erase(key);
+    return seal_container(root_.dump(), sink_.bin);
+}
+
+}  // namespace vsplit::bake
