@@ -80,8 +80,8 @@ Status AttributeSet::add(const std::string& name, int type, const std::string& p
             break;
     }
     if (!fits)
-        return Error{ErrorCode::kMalformed,
-                     place + ": " + name.substr(0, 100) + " is a " + type_name(type), Error::kNowhere, 0};
+        return Error{ErrorCode::kMalformed, place + ": " + name.substr(0, 100) + " is a " + type_name(type),
+                     Error::kNowhere, 0};
     std::uint32_t& components = components_[name];
     components = std::max(components, static_cast<std::uint32_t>(components_of(type)));
     return Ok{};
@@ -125,8 +125,7 @@ const std::vector<Attribute>& AttributeSet::order() {
         return std::tuple(name.target, rank, rank == 5 ? 0 : name.set, full);
     };
     ordered_.clear();
-    for (const auto& [name, components] : all)
-        ordered_.push_back({name, semantic_of(name), components, {}});
+    for (const auto& [name, components] : all) ordered_.push_back({name, semantic_of(name), components, {}});
     std::sort(ordered_.begin(), ordered_.end(),
               [&](const Attribute& a, const Attribute& b) { return key(a.name) < key(b.name); });
     for (std::size_t i = 0; i < ordered_.size(); ++i)

@@ -49,8 +49,8 @@ Error fault(const std::string& message) {
 }  // namespace
 
 Result<DracoStream> encode_draco(std::span<const VertexValues* const> names,
-                                 std::span<const PackedValues> values,
-                                 std::span<const std::uint32_t> corners, const Grid& box, bool keep_order) {
+                                 std::span<const PackedValues> values, std::span<const std::uint32_t> corners,
+                                 const Grid& box, bool keep_order) {
     const std::size_t vertices = values[0].count;
     draco::Mesh mesh;
     mesh.set_num_points(std::uint32_t(vertices));
@@ -81,7 +81,8 @@ Result<DracoStream> encode_draco(std::span<const VertexValues* const> names,
     }
     draco::ExpertEncoder encoder(mesh);
     encoder.SetSpeedOptions(3, 3);
-    encoder.SetEncodingMethod(keep_order ? draco::MESH_SEQUENTIAL_ENCODING : draco::MESH_EDGEBREAKER_ENCODING);
+    encoder.SetEncodingMethod(keep_order ? draco::MESH_SEQUENTIAL_ENCODING
+                                         : draco::MESH_EDGEBREAKER_ENCODING);
     for (std::size_t i = 0; i < names.size(); ++i) {
         if (values[i].stored.component_type != kFloat) continue;
         if (i == 0) {
@@ -109,9 +110,9 @@ Result<DracoStream> encode_draco(std::span<const VertexValues* const> names,
     if (keep_order && out.vertices != vertices) return fault("the vertices did not keep their order");
     if (positions->values.empty()) return fault("nothing is left of the primitive");
     for (std::size_t c = 0; c < 3; ++c) {
-        const auto [least, most] = std::minmax_element(
-            positions->values.begin(), positions->values.end(),
-            [&](const auto& a, const auto& b) { return a[c] < b[c]; });
+        const auto [least, most] =
+            std::minmax_element(positions->values.begin(), positions->values.end(),
+                                [&](const auto& a, const auto& b) { return a[c] < b[c]; });
         out.min.push_back(double((*least)[c]));
         out.max.push_back(double((*most)[c]));
     }

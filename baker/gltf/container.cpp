@@ -74,6 +74,29 @@ void put_u32(std::vector<std::byte>& out, std::uint64_t value) {
 
 }  // namespace
 
+Status check_json_depth(std::string_view json, std::uint64_t offset) {
+    constexpr int kMaxDepth = 200;
+    int depth = 0;
+    bool quoted = false;
+    for (std::size_t i = 0; i < json.size(); ++i) {
+        const char c = json[i];
+        if (quoted) {
+            if (c == '\\') ++i;
+            if (c == '"') quoted = false;
+        } else if (c == '"') {
+            quoted = true;
+        } else if (c == '{' || c == '[') {
+            if (++depth > kMaxDepth)
+                return Error{ErrorCode::kLimit,
+                             "the JSON nests more than " + std::to_string(kMaxDepth) + " deep", offset + i,
+                             0};
+        } else if (c == '}' || c == ']') {
+            --depth;
+        }
+    }
+    return Ok{};
+}
+
 Result<std::vector<std::byte>> seal_container(std::string json, std::span<const std::byte> bin) {
     json.resize((json.size() + 3) / 4 * 4, ' ');
     const std::size_t padded = (bin.size() + 3) / 4 * 4;

@@ -26,33 +26,9 @@ Error fault(ErrorCode code, std::string message) {
     return {code, std::move(message), Error::kNowhere, 0};
 }
 
-/// Real documents nest about ten deep; printing and tinygltf's extension values recurse.
-constexpr int kMaxDepth = 200;
-
-Status check_depth(const GltfContainer& container) {
-    int depth = 0;
-    bool quoted = false;
-    for (std::size_t i = 0; i < container.json.size(); ++i) {
-        const char c = container.json[i];
-        if (quoted) {
-            if (c == '\\') ++i;
-            if (c == '"') quoted = false;
-        } else if (c == '"') {
-            quoted = true;
-        } else if (c == '{' || c == '[') {
-            if (++depth > kMaxDepth)
-                return Error{ErrorCode::kLimit,
-                             "the JSON nests more than " + std::to_string(kMaxDepth) + " deep",
-                             container.json_offset + i, 0};
-        } else if (c == '}' || c == ']') {
-            --depth;
-        }
-    }
-    return Ok{};
-}
-
 Result<json> parse_json(const GltfContainer& container) {
-    if (Status depth = check_depth(container); !depth.ok()) return depth.error();
+    if (Status depth = check_json_depth(container.json, container.json_offset); !depth.ok())
+        return depth.error();
     try {
         return json::parse(container.json);
     } catch (const json::parse_error& error) {

@@ -111,7 +111,8 @@ std::size_t GeometrySink::add_accessor(OrderedJson accessor, std::span<const std
         const Known& known = it->second;
         const auto stored = meshopt_ ? std::span<const std::byte>(known.plain)
                                      : std::span<const std::byte>(bin).subspan(known.offset, known.bytes);
-        if (known.description == description && std::equal(bytes.begin(), bytes.end(), stored.begin(), stored.end()))
+        if (known.description == description &&
+            std::equal(bytes.begin(), bytes.end(), stored.begin(), stored.end()))
             return known.accessor;
     }
     accessor["bufferView"] = add_stream(bytes, stride, count, target);
@@ -156,11 +157,9 @@ std::size_t GeometrySink::add_promise(const StoredAttribute& stored, std::size_t
 
 std::size_t GeometrySink::add_matrices(std::span<const float> values) {
     const std::size_t view = add_view(std::as_bytes(values));
-    return place("accessors", next_accessor_,
-                 {{"bufferView", view},
-                  {"componentType", kFloat},
-                  {"count", values.size() / 16},
-                  {"type", "MAT4"}});
+    return place(
+        "accessors", next_accessor_,
+        {{"bufferView", view}, {"componentType", kFloat}, {"count", values.size() / 16}, {"type", "MAT4"}});
 }
 
 void GeometrySink::keep_view(std::size_t number, const KeptView& kept) {

@@ -92,8 +92,8 @@ void NodeSurgery::each_weights_channel(std::size_t n, Each each) {
         const OrderedJson& target = channels[c]["target"];
         const OrderedJson* path = member(target, "path");
         const auto [to, rest] = pointed(target, "nodes");
-        const bool plain = path != nullptr && *path == "weights" &&
-                           number_of(member(target, "node"), std::size_t(-1)) == n;
+        const bool plain =
+            path != nullptr && *path == "weights" && number_of(member(target, "node"), std::size_t(-1)) == n;
         if (plain || (to == n && rest.starts_with("weights"))) each(channels, c, plain, rest);
     });
 }
@@ -197,16 +197,16 @@ void NodeSurgery::add_levels(std::size_t n, const std::vector<std::size_t>& mesh
         ids.push_back(number);
         // Morphing goes on at every level.
         std::vector<std::pair<OrderedJson*, OrderedJson>> more;
-        each_weights_channel(
-            n, [&](OrderedJson& channels, std::size_t c, bool plain, const std::string& rest) {
-                OrderedJson channel = channels[c];
-                if (plain)
-                    channel["target"]["node"] = number;
-                else
-                    channel["target"]["extensions"]["KHR_animation_pointer"]["pointer"] =
-                        "/nodes/" + std::to_string(number) + "/" + rest;
-                more.emplace_back(&channels, std::move(channel));
-            });
+        each_weights_channel(n,
+                             [&](OrderedJson& channels, std::size_t c, bool plain, const std::string& rest) {
+                                 OrderedJson channel = channels[c];
+                                 if (plain)
+                                     channel["target"]["node"] = number;
+                                 else
+                                     channel["target"]["extensions"]["KHR_animation_pointer"]["pointer"] =
+                                         "/nodes/" + std::to_string(number) + "/" + rest;
+                                 more.emplace_back(&channels, std::move(channel));
+                             });
         for (auto& [channels, channel] : more) channels->push_back(std::move(channel));
     }
     OrderedJson& host = root_["nodes"][n];

@@ -113,7 +113,9 @@ int exponent_for(double scale, const std::vector<PrimitiveMesh>& primitives) {
 class SceneReader {
   public:
     SceneReader(Document& document, const GltfOptions& options)
-        : document_(document), options_(options), left_(options.max_triangles),
+        : document_(document),
+          options_(options),
+          left_(options.max_triangles),
           values_left_(options.max_attribute_values) {}
 
     Scene scene;
@@ -130,8 +132,7 @@ class SceneReader {
         }
         if (Status status = name_attributes(); !status.ok()) return status;
         for (Part& part : parts_) append(part);
-        if (scene.mesh.triangles.empty())
-            return fault(ErrorCode::kMalformed, "the scene has no triangle");
+        if (scene.mesh.triangles.empty()) return fault(ErrorCode::kMalformed, "the scene has no triangle");
         if (!any_weights_) scene.mesh.weights.clear();
         if (dropped_values_ > 0)
             scene.notes.push_back(std::to_string(dropped_values_) +
@@ -233,16 +234,17 @@ class SceneReader {
         scene.mesh.attributes = set_.order();
         const std::uint64_t components = set_.components();
         if (components > 0 && vertices_ > options_.max_attribute_values / components)
-            return fault(ErrorCode::kLimit,
-                         "the scene's " + std::to_string(scene.mesh.attributes.size()) +
-                             " attributes of " + std::to_string(vertices_) +
-                             " vertices are more values than the limit");
+            return fault(ErrorCode::kLimit, "the scene's " + std::to_string(scene.mesh.attributes.size()) +
+                                                " attributes of " + std::to_string(vertices_) +
+                                                " vertices are more values than the limit");
         return Ok{};
     }
 
     void append(Part& part) {
         const int exponent = exponent_for(part.scale, part.primitives);
         const auto number = static_cast<std::uint32_t>(scene.parts.size());
+        if (const double unit = std::ldexp(part.scale, -exponent); std::isfinite(unit))
+            scene.unit = std::max(scene.unit, unit);
         ScenePart made{part.mesh, exponent, std::uint32_t(scene.mesh.positions.size()), 0};
         for (PrimitiveMesh& primitive : part.primitives) {
             append(primitive, next_primitive_++, exponent);
@@ -350,9 +352,9 @@ Result<Scene> read_whole(std::span<const std::byte> bytes, const std::string& fo
     SceneReader reader(*document, options);
     if (Status status = reader.read(*use, *channel); !status.ok()) return status.error();
     if (!options.weight_channel.empty() && !reader.any_weights())
-        return fault(ErrorCode::kArgument,
-                     "no primitive of the scene has the weight channel " + options.weight_channel +
-                         "; its attributes are " + attributes_there(document->model));
+        return fault(ErrorCode::kArgument, "no primitive of the scene has the weight channel " +
+                                               options.weight_channel + "; its attributes are " +
+                                               attributes_there(document->model));
     reader.measure(*use);
     Scene scene = std::move(reader.scene);
     auto remains = remaining_document(bytes, *document, folder, *use, reader.taken, scene.notes);

@@ -154,7 +154,8 @@ class VertexSource {
     }
 
     static Error too_many(const std::string& place) {
-        return fault(ErrorCode::kLimit, place, "more attribute values than the limit of the whole scene leaves");
+        return fault(ErrorCode::kLimit, place,
+                     "more attribute values than the limit of the whole scene leaves");
     }
 
   private:
@@ -247,8 +248,7 @@ Status read_attributes(const VertexSource& source, const tinygltf::Primitive& pr
     for (std::size_t k = 0; k < primitive.targets.size(); ++k)
         for (const auto& [attribute, accessor] : primitive.targets[k]) {
             const std::string full = std::to_string(k) + "/" + attribute;
-            const std::string place =
-                name + "." + object_name("targets", k) + "." + attribute.substr(0, 100);
+            const std::string place = name + "." + object_name("targets", k) + "." + attribute.substr(0, 100);
             if (Status status = add(source.read_accessor(accessor, full, place, out.used, left));
                 !status.ok())
                 return status;
@@ -291,8 +291,7 @@ Result<PrimitiveMesh> read_primitive(Document& document, std::size_t mesh_number
     VertexSource source(document, primitive, name);
     PrimitiveMesh out;
     if (const auto draco = document.draco.find({mesh_number, number}); draco != document.draco.end()) {
-        if (Status status =
-                decode_draco(source, document, draco->second, primitive, max_triangles, name);
+        if (Status status = decode_draco(source, document, draco->second, primitive, max_triangles, name);
             !status.ok())
             return status.error();
         out.corners = std::move(source.mesh.corners);
@@ -309,8 +308,7 @@ Result<PrimitiveMesh> read_primitive(Document& document, std::size_t mesh_number
         if (positions->count() > std::numeric_limits<std::uint32_t>::max())
             return fault(ErrorCode::kLimit, name, "more than 4,294,967,295 vertices");
         source.count = positions->count();
-        auto corners =
-            read_corners(document, primitive, source.count, max_triangles, name, out.leftover);
+        auto corners = read_corners(document, primitive, source.count, max_triangles, name, out.leftover);
         if (!corners.ok()) return corners.error();
         out.corners = std::move(*corners);
     }

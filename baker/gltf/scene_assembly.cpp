@@ -50,8 +50,12 @@ Status check_scene_levels(const Scene& scene, std::span<const GltfLevel> levels)
 }
 
 SceneAssembly::SceneAssembly(const Scene& scene, const SceneFormat& format)
-    : scene_(scene), format_(format), root_(scene.document->root), sink_(root_, format.meshopt),
-      nodes_(root_), writer_(scene, format, sink_) {}
+    : scene_(scene),
+      format_(format),
+      root_(scene.document->root),
+      sink_(root_, format.meshopt),
+      nodes_(root_),
+      writer_(scene, format, sink_) {}
 
 /// Meshes that a skin moves share a grid with all meshes of that skin, since the grid goes into its
 /// matrices; meshes that are instanced on the GPU have no place for one.
@@ -83,7 +87,8 @@ void SceneAssembly::choose_grids(std::span<const GltfLevel> levels) {
         double scale = std::max(grid.scale, box->scale);
         for (std::size_t c = 0; c < 3; ++c) {
             const double least = std::min(grid.offset[c], box->offset[c]);
-            scale = std::max({scale, grid.offset[c] + grid.scale - least, box->offset[c] + box->scale - least});
+            scale =
+                std::max({scale, grid.offset[c] + grid.scale - least, box->offset[c] + box->scale - least});
             grid.offset[c] = least;
         }
         grid.scale = scale;
@@ -99,8 +104,7 @@ void SceneAssembly::choose_grids(std::span<const GltfLevel> levels) {
             writer_.quantise(scene_.parts[p].mesh, grid->second);
     for (std::size_t p = 0; p < scene_.parts.size(); ++p)
         if (const auto grid = grids.find(find(p)); grid != grids.end())
-            for (const std::size_t n : nodes_.users(scene_.parts[p].mesh))
-                nodes_.apply_grid(n, grid->second);
+            for (const std::size_t n : nodes_.users(scene_.parts[p].mesh)) nodes_.apply_grid(n, grid->second);
     for (std::size_t s = 0; s < skins; ++s)
         if (const auto grid = grids.find(find(scene_.parts.size() + s)); grid != grids.end())
             quantise_skin(s, grid->second);
@@ -154,8 +158,9 @@ Status SceneAssembly::share_vertices(std::span<const GltfLevel> levels) {
             same = std::memcmp(mesh.attributes[a].values.data(), finest.attributes[a].values.data(),
                                mesh.attributes[a].values.size() * sizeof(float)) == 0;
         if (!same)
-            return fault(name + " has vertices of its own: levels share them only where every vertex stays "
-                                "at its place (placement endpoint)");
+            return fault(name +
+                         " has vertices of its own: levels share them only where every vertex stays "
+                         "at its place (placement endpoint)");
     }
     for (std::size_t g = 0; g < scene_.primitives.size(); ++g) {
         std::vector<std::uint32_t> all;
@@ -278,7 +283,8 @@ Result<std::vector<std::byte>> SceneAssembly::finish() {
     sink_.finish();
     for (const char* key : {"nodes", "scenes", "materials", "images", "textures", "samplers", "skins",
                             "animations", "cameras", "meshes"})
-        if (const OrderedJson* array = member(root_, key); array != nullptr && array->is_array() && array->empty())
+        if (const OrderedJson* array = member(root_, key);
+            array != nullptr && array->is_array() && array->empty())
             root_.erase(key);
     return seal_container(root_.dump(), sink_.bin);
 }

@@ -28,9 +28,9 @@ struct KeptView {
     bool image = false;
 };
 
-/// No number of an object that stays changes, since extensions may name it in ways that nobody knows: accessors and
-/// buffer views that are gone leave a null, for the next one to take. `root` has no buffers, and its triangle
-/// primitives have lost indices, attributes and targets.
+/// No number of an object that stays changes, since extensions may name it in ways that nobody knows:
+/// accessors and buffer views that are gone leave a null, for the next one to take. `root` has no buffers,
+/// and its triangle primitives have lost indices, attributes and targets.
 struct SceneDocument {
     OrderedJson root;
     std::map<std::size_t, KeptView> views;

@@ -216,8 +216,7 @@ class Shaper {
                 return map(in, out, [&](json& from, json& to) { return index(from, field.target, to); });
             case Kind::kIndexMaps:
                 return array(in, out, [&](json& from, json& to) {
-                    return map(from, to,
-                               [&](json& from, json& to) { return index(from, field.target, to); });
+                    return map(from, to, [&](json& from, json& to) { return index(from, field.target, to); });
                 });
             case Kind::kUnsignedMap:
                 return map(in, out, [&](json& from, json& to) -> Status {

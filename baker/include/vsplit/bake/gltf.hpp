@@ -38,8 +38,8 @@ struct GltfOptions {
 Result<MeshFile> parse_gltf(std::span<const std::byte> bytes, const std::string& folder,
                             const GltfOptions& options = {});
 
-/// The screen (16:9) for which switching distances are computed, and how many of its pixels a level's error may
-/// span while it is shown.
+/// The screen (16:9) for which switching distances are computed, and how many of its pixels a level's error
+/// may span while it is shown.
 struct Screen {
     double lines = 1080;
     double pixels = 1;

@@ -37,8 +37,8 @@ struct ScenePrimitive {
 
 /// One glTF mesh. Its vertices follow each other in Scene::mesh.
 struct ScenePart {
-    std::uint32_t mesh = 0;                            ///< Number in the document.
-    int exponent = 0;                                  ///< Coordinates are the file's times 2^exponent.
+    std::uint32_t mesh = 0;  ///< Number in the document.
+    int exponent = 0;        ///< Coordinates are the file's times 2^exponent.
     std::uint32_t first_vertex = 0, end_vertex = 0;
 };
 
@@ -59,7 +59,10 @@ struct Scene {
     std::vector<std::uint32_t> part_of;  ///< Per vertex of `mesh`, its number in `parts`.
     std::vector<ScenePart> parts;
     std::vector<ScenePrimitive> primitives;
-    double radius = 0;  ///< Of a ball around all places of all parts, in the world. About right for skinned ones.
+    double radius =
+        0;  ///< Of a ball around all places of all parts, in the world. About right for skinned ones.
+    /// Errors of `mesh` times this are at least what they are anywhere in the world; from 1 to 2.
+    double unit = 1;
     MeshReport report;
     std::vector<std::string> notes;  ///< What was met and not carried along, for people.
     std::shared_ptr<const SceneDocument> document;
@@ -70,6 +73,10 @@ struct Scene {
 /// A scene without a triangle is kMalformed.
 Result<Scene> parse_scene(std::span<const std::byte> bytes, const std::string& folder,
                           const GltfOptions& options = {});
+
+/// A scene of one node around a mesh that came without one, as from a .pmesh: a primitive and a plain
+/// material a group, attributes as floats. Its `mesh` has the attributes' names only.
+Scene plain_scene(const Mesh& mesh);
 
 /// How encode_scene writes geometry.
 struct SceneFormat {
@@ -89,6 +96,11 @@ struct SceneFormat {
 /// the scene.
 Result<std::vector<std::byte>> encode_scene(const Scene& scene, std::span<const GltfLevel> levels,
                                             const SceneFormat& format = {});
+
+/// The same of levels that came without a scene, as from a .pmesh: encode_glb if they have neither attributes
+/// nor groups and the format is plain; else around plain_scene(), with smooth normals where they have none.
+Result<std::vector<std::byte>> encode_levels(std::span<const GltfLevel> levels,
+                                             const SceneFormat& format = {});
 
 /// A GLB that shows `shown`, carries `pmesh`, a .pmesh file made of the scene's mesh, and says how the two go
 /// together (formats/gltf/VSPLIT_progressive_mesh).
