@@ -190,6 +190,7 @@ void GeometrySink::finish() {
     };
     fill("accessors", {{"componentType", kUnsignedByte}, {"count", 1}, {"type", "SCALAR"}});
     fill("bufferViews", {{"buffer", 0}, {"byteLength", 1}});
+    if (bin.empty() && fallback_bytes_ == 0) return;
     root_["buffers"] = OrderedJson::array({{{"byteLength", bin.size()}}});
     if (fallback_bytes_ == 0) return;
     root_["buffers"].push_back(

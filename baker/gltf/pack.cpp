@@ -10,12 +10,11 @@
 namespace vsplit::bake {
 namespace {
 
-/// Unit within rounding of what wrote it; these keep their bits.
-constexpr double kUnit = 1e-4;
-
-bool unit(const float* v) {
+/// Unit within rounding of what holds it; these keep their bits.
+bool unit(const float* v, std::uint32_t component_type) {
+    const double tolerance = component_type == kByte ? 0.02 : 1e-4;
     const double square = double(v[0]) * v[0] + double(v[1]) * v[1] + double(v[2]) * v[2];
-    return std::fabs(square - 1) <= 2 * kUnit;
+    return std::fabs(square - 1) <= 2 * tolerance;
 }
 
 bool normalise(float* v) {
@@ -143,7 +142,7 @@ void make_lawful(std::vector<VertexValues>& attributes, std::span<const Float3> 
             case Semantic::kNormal:
                 for (std::size_t v = 0; 3 * v < values.size(); ++v) {
                     float* n = values.data() + 3 * v;
-                    if (unit(n) || normalise(n)) continue;
+                    if (unit(n, attribute.stored.component_type) || normalise(n)) continue;
                     n[0] = fallback[v].x, n[1] = fallback[v].y, n[2] = fallback[v].z;
                 }
                 normals = &attribute;
@@ -151,7 +150,7 @@ void make_lawful(std::vector<VertexValues>& attributes, std::span<const Float3> 
             case Semantic::kTangent:
                 for (std::size_t v = 0; 4 * v < values.size(); ++v) {
                     float* t = values.data() + 4 * v;
-                    if (!unit(t) && !normalise(t)) {
+                    if (!unit(t, attribute.stored.component_type) && !normalise(t)) {
                         const float* n = normals != nullptr ? normals->values.data() + 3 * v : &fallback[v].x;
                         across(n, t);
                     }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <functional>
 #include <limits>
 #include <set>
 
@@ -105,24 +106,70 @@ void SceneAssembly::choose_grids(std::span<const GltfLevel> levels) {
     for (std::size_t p = 0; p < scene_.parts.size(); ++p)
         if (const auto grid = grids.find(find(p)); grid != grids.end())
             for (const std::size_t n : nodes_.users(scene_.parts[p].mesh)) nodes_.apply_grid(n, grid->second);
+    std::map<std::size_t, Grid> by_skin;
     for (std::size_t s = 0; s < skins; ++s)
         if (const auto grid = grids.find(find(scene_.parts.size() + s)); grid != grids.end())
-            quantise_skin(s, grid->second);
+            by_skin.emplace(s, grid->second);
+    quantise_skins(by_skin);
 }
 
-void SceneAssembly::quantise_skin(std::size_t skin, const Grid& grid) {
-    OrderedJson& object = root_["skins"][skin];
-    std::vector<float> matrices = scene_.document->inverse_bind[skin];
-    for (std::size_t j = 0; j + 16 <= matrices.size(); j += 16) {
-        float* m = matrices.data() + j;
-        for (std::size_t row = 0; row < 4; ++row) {
-            double moved = double(m[12 + row]);
-            for (std::size_t c = 0; c < 3; ++c) moved += double(m[4 * c + row]) * grid.offset[c];
-            for (std::size_t c = 0; c < 3; ++c) m[4 * c + row] = float(double(m[4 * c + row]) * grid.scale);
-            m[12 + row] = float(moved);
+/// What a joint does to a vertex it now does to one that the grid has moved and scaled.
+void SceneAssembly::quantise_skins(const std::map<std::size_t, Grid>& grids) {
+    if (grids.empty()) return;
+    OrderedJson& skins = root_["skins"];
+    std::set<std::size_t> old;
+    for (const auto& [s, grid] : grids)
+        if (const OrderedJson* accessor = member(skins[s], "inverseBindMatrices")) {
+            old.insert(accessor->get<std::size_t>());
+            skins[s].erase("inverseBindMatrices");
         }
+    for (const OrderedJson& skin : skins)
+        if (const OrderedJson* accessor = member(skin, "inverseBindMatrices"))
+            old.erase(accessor->get<std::size_t>());
+    for (const std::size_t accessor : old) drop_accessor(accessor);
+    for (const auto& [s, grid] : grids) {
+        std::vector<float> matrices = scene_.document->inverse_bind[s];
+        for (std::size_t j = 0; j + 16 <= matrices.size(); j += 16) {
+            float* m = matrices.data() + j;
+            for (std::size_t row = 0; row < 4; ++row) {
+                double moved = double(m[12 + row]);
+                for (std::size_t c = 0; c < 3; ++c) moved += double(m[4 * c + row]) * grid.offset[c];
+                for (std::size_t c = 0; c < 3; ++c)
+                    m[4 * c + row] = float(double(m[4 * c + row]) * grid.scale);
+                m[12 + row] = float(moved);
+            }
+        }
+        skins[s]["inverseBindMatrices"] = sink_.add_matrices(matrices);
     }
-    object["inverseBindMatrices"] = sink_.add_matrices(matrices);
+}
+
+void SceneAssembly::drop_accessor(std::size_t accessor) {
+    OrderedJson& accessors = root_["accessors"];
+    const OrderedJson* view = member(accessors[accessor], "bufferView");
+    const std::size_t number = view != nullptr ? view->get<std::size_t>() : kNone;
+    const bool sparse = accessors[accessor].contains("sparse");
+    accessors[accessor] = nullptr;
+    if (number == kNone || sparse) return;
+    const auto names = [&](const OrderedJson& object) {
+        const OrderedJson* other = member(object, "bufferView");
+        return other != nullptr && *other == number;
+    };
+    for (const OrderedJson& other : accessors) {
+        if (names(other)) return;
+        if (const OrderedJson* parts = member(other, "sparse"))
+            for (const OrderedJson& part : *parts)
+                if (names(part)) return;
+    }
+    // Only views that were cut out for one accessor, or are plainly its own, have no other user to look for.
+    const OrderedJson* kept = &root_["bufferViews"][number];
+    if (kept->contains("extensions")) return;
+    const std::function<bool(const OrderedJson&)> used = [&](const OrderedJson& value) {
+        if (names(value)) return true;
+        return (value.is_object() || value.is_array()) && std::any_of(value.begin(), value.end(), used);
+    };
+    if (used(root_)) return;
+    root_["bufferViews"][number] = nullptr;
+    dropped_views_.insert(number);
 }
 
 double SceneAssembly::radius_of(const Mesh& mesh, std::size_t document_mesh) const {
@@ -276,7 +323,7 @@ Status SceneAssembly::add_levels(std::span<const GltfLevel> levels) {
 void SceneAssembly::add_kept() {
     for (const bool images : {false, true})
         for (const auto& [number, view] : scene_.document->views)
-            if (view.image == images) sink_.keep_view(number, view);
+            if (view.image == images && !dropped_views_.contains(number)) sink_.keep_view(number, view);
 }
 
 Result<std::vector<std::byte>> SceneAssembly::finish() {

@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <map>
+#include <set>
 #include <span>
 #include <vector>
 
@@ -37,7 +38,8 @@ class SceneAssembly {
 
   private:
     void choose_grids(std::span<const GltfLevel> levels);
-    void quantise_skin(std::size_t skin, const Grid& grid);
+    void quantise_skins(const std::map<std::size_t, Grid>& grids);
+    void drop_accessor(std::size_t accessor);
     Status write_meshes(std::span<const GltfLevel> levels);
     Status share_vertices(std::span<const GltfLevel> levels);
     void place_levels(std::span<const GltfLevel> levels);
@@ -53,6 +55,7 @@ class SceneAssembly {
     /// By part, by level: the mesh in the written document, or none.
     std::vector<std::vector<std::size_t>> mesh_at_;
     std::vector<int> shown_at_;
+    std::set<std::size_t> dropped_views_;  // that stayed, but for what is replaced here
 };
 
 }  // namespace vsplit::bake

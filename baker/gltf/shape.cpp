@@ -216,7 +216,8 @@ class Shaper {
                 return map(in, out, [&](json& from, json& to) { return index(from, field.target, to); });
             case Kind::kIndexMaps:
                 return array(in, out, [&](json& from, json& to) {
-                    return map(from, to, [&](json& from, json& to) { return index(from, field.target, to); });
+                    return map(from, to,
+                               [&](json& number, json& taken) { return index(number, field.target, taken); });
                 });
             case Kind::kUnsignedMap:
                 return map(in, out, [&](json& from, json& to) -> Status {
