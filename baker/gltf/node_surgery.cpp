@@ -12,7 +12,9 @@ namespace {
 constexpr const char* kInstancing = "EXT_mesh_gpu_instancing";
 
 std::size_t number_of(const OrderedJson* value, std::size_t none) {
-    return value != nullptr && value->is_number_unsigned() ? value->get<std::size_t>() : none;
+    if (value == nullptr || !value->is_number()) return none;
+    const double number = value->get<double>();  // "3.0" is a whole number, too
+    return number >= 0 && number <= 4294967295.0 ? static_cast<std::size_t>(number) : none;
 }
 
 /// "/nodes/12/rotation" of KHR_animation_pointer: 12 and "rotation".
