@@ -96,6 +96,7 @@ void PrimitiveWriter::set_boxes(std::span<const GltfLevel> levels) {
                 ranges[m][0].add(double(std::ldexp(p.x, back)));
                 ranges[m][1].add(double(std::ldexp(p.y, back)));
                 ranges[m][2].add(double(std::ldexp(p.z, back)));
+                if (!format_.quantised) continue;
                 for (const Attribute& attribute : mesh.attributes)
                     if (attribute.semantic == Semantic::kMorphOffset)
                         for (std::size_t c = 0; c < 3; ++c)

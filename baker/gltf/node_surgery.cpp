@@ -56,11 +56,10 @@ NodeSurgery::NodeSurgery(OrderedJson& root) : root_(root) {
         const OrderedJson* path = member(target, "path");
         const bool weights = path != nullptr && *path == "weights";
         if (const std::size_t n = number_of(member(target, "node"), root_["nodes"].size());
-            n < root_["nodes"].size() && !weights)
-            moving_.insert(n);
-        if (const auto [n, rest] = pointed(target, "nodes");
-            !rest.empty() && n < root_["nodes"].size() && !rest.starts_with("weights"))
-            moving_.insert(n);
+            n < root_["nodes"].size())
+            (weights ? morphing_ : moving_).insert(n);
+        if (const auto [n, rest] = pointed(target, "nodes"); !rest.empty() && n < root_["nodes"].size())
+            (rest.starts_with("weights") ? morphing_ : moving_).insert(n);
     });
     if (const OrderedJson* skins = member(root_, "skins"))
         for (const OrderedJson& skin : *skins) {
@@ -71,11 +70,13 @@ NodeSurgery::NodeSurgery(OrderedJson& root) : root_(root) {
         }
 }
 
-std::vector<std::size_t> NodeSurgery::users(std::size_t mesh) const {
-    std::vector<std::size_t> out;
+std::vector<std::vector<std::size_t>> NodeSurgery::users() const {
+    const OrderedJson* meshes = member(root_, "meshes");
+    std::vector<std::vector<std::size_t>> out(meshes != nullptr ? meshes->size() : 0);
     const OrderedJson& nodes = root_["nodes"];
     for (std::size_t n = 0; n < nodes.size(); ++n)
-        if (number_of(member(nodes[n], "mesh"), std::size_t(-1)) == mesh) out.push_back(n);
+        if (const std::size_t m = number_of(member(nodes[n], "mesh"), out.size()); m < out.size())
+            out[m].push_back(n);
     return out;
 }
 
@@ -90,6 +91,7 @@ std::size_t NodeSurgery::add_node(OrderedJson node) {
 
 template <class Each>
 void NodeSurgery::each_weights_channel(std::size_t n, Each each) {
+    if (!morphing_.contains(n)) return;
     each_channel(root_, [&](OrderedJson& channels, std::size_t c) {
         const OrderedJson& target = channels[c]["target"];
         const OrderedJson* path = member(target, "path");
@@ -104,6 +106,7 @@ void NodeSurgery::take_mesh(std::size_t n) {
     OrderedJson& node = root_["nodes"][n];
     for (const char* key : {"mesh", "skin", "weights"}) node.erase(key);
     erase_extension(node, kInstancing);
+    if (!morphing_.contains(n)) return;
     // Channels are emptied first, so that their numbers hold while they are looked at.
     each_weights_channel(
         n, [](OrderedJson& channels, std::size_t c, bool, const std::string&) { channels[c] = nullptr; });
@@ -158,6 +161,7 @@ std::size_t NodeSurgery::split_off(std::size_t n) {
             target["extensions"]["KHR_animation_pointer"]["pointer"] =
                 "/nodes/" + std::to_string(number) + "/" + rest;
     });
+    if (morphing_.erase(n) > 0) morphing_.insert(number);
     if (!skinned) {
         OrderedJson& children = root_["nodes"][n]["children"];
         if (!children.is_array()) children = OrderedJson::array();
@@ -217,16 +221,16 @@ void NodeSurgery::add_levels(std::size_t n, const std::vector<std::size_t>& mesh
     use_extension(root_, "MSFT_lod", false);
 }
 
-void NodeSurgery::apply_grid(std::size_t n, const Grid& grid) {
+std::size_t NodeSurgery::apply_grid(std::size_t n, const Grid& grid) {
     OrderedJson& node = root_["nodes"][n];
-    if (node.contains("skin")) return;  // its inverse bind matrices take it
+    if (node.contains("skin")) return n;  // its inverse bind matrices take it
     const auto scale = OrderedJson::array({grid.scale, grid.scale, grid.scale});
     const auto offset = OrderedJson::array({grid.offset[0], grid.offset[1], grid.offset[2]});
     if (!simple(n) || node.contains("matrix")) {
         const std::size_t child = split_off(n);
         root_["nodes"][child]["translation"] = offset;
         root_["nodes"][child]["scale"] = scale;
-        return;
+        return child;
     }
     const auto numbers = [&](const char* key, std::vector<double> otherwise) {
         const OrderedJson* given = member(node, key);
@@ -251,6 +255,7 @@ void NodeSurgery::apply_grid(std::size_t n, const Grid& grid) {
     }
     node["translation"] = t;
     node["scale"] = s;
+    return n;
 }
 
 void NodeSurgery::drop_missing_meshes() {

@@ -20,8 +20,8 @@ class NodeSurgery {
   public:
     explicit NodeSurgery(OrderedJson& root);
 
-    /// Numbers of the nodes that use the mesh, ascending.
-    std::vector<std::size_t> users(std::size_t mesh) const;
+    /// By mesh, the numbers of the nodes that use it, ascending.
+    std::vector<std::vector<std::size_t>> users() const;
     const OrderedJson& node(std::size_t n) const { return root_["nodes"][n]; }
     bool instanced(std::size_t n) const;  ///< By EXT_mesh_gpu_instancing.
 
@@ -33,8 +33,9 @@ class NodeSurgery {
     void add_levels(std::size_t n, const std::vector<std::size_t>& meshes,
                     const std::vector<double>& coverage);
 
-    /// Undoes the grid of a quantised mesh: in the node, or in a new one below it.
-    void apply_grid(std::size_t n, const Grid& grid);
+    /// Undoes the grid of a quantised mesh: in the node, or in a new one below it. The node that has the mesh
+    /// then.
+    std::size_t apply_grid(std::size_t n, const Grid& grid);
 
     /// Takes out the meshes that are null, and renumbers.
     void drop_missing_meshes();
@@ -48,7 +49,7 @@ class NodeSurgery {
     void each_weights_channel(std::size_t n, Each each);
 
     OrderedJson& root_;
-    std::set<std::size_t> moving_, joints_;
+    std::set<std::size_t> moving_, joints_, morphing_;  // nodes, by what animates or holds them
 };
 
 }  // namespace vsplit::bake

@@ -59,7 +59,7 @@ SceneAssembly::SceneAssembly(const Scene& scene, const SceneFormat& format)
       writer_(scene, format, sink_) {}
 
 /// Meshes that a skin moves share a grid with all meshes of that skin, since the grid goes into its
-/// matrices; meshes that are instanced on the GPU have no place for one.
+/// matrices; meshes that are instanced on the GPU, or have points or lines too, have no place for one.
 void SceneAssembly::choose_grids(std::span<const GltfLevel> levels) {
     writer_.set_boxes(levels);
     if (!format_.quantised) return;
@@ -73,11 +73,19 @@ void SceneAssembly::choose_grids(std::span<const GltfLevel> levels) {
     };
     std::set<std::size_t> barred;
     for (std::size_t p = 0; p < scene_.parts.size(); ++p)
-        for (const std::size_t n : nodes_.users(scene_.parts[p].mesh)) {
+        for (const std::size_t n : users_[scene_.parts[p].mesh]) {
             if (const OrderedJson* skin = member(nodes[n], "skin"))
                 leader[find(p)] = find(scene_.parts.size() + skin->get<std::size_t>());
             if (nodes_.instanced(n)) barred.insert(p);
         }
+    // Points and lines of the mesh are not rewritten, and would move along.
+    for (std::size_t p = 0; p < scene_.parts.size(); ++p) {
+        const std::uint32_t mesh = scene_.parts[p].mesh;
+        const auto rewritten =
+            std::count_if(scene_.primitives.begin(), scene_.primitives.end(),
+                          [&](const ScenePrimitive& primitive) { return primitive.mesh == mesh; });
+        if (root_["meshes"][mesh]["primitives"].size() > std::size_t(rewritten)) barred.insert(p);
+    }
     std::map<std::size_t, Grid> grids;
     for (std::size_t p = 0; p < scene_.parts.size(); ++p) {
         const auto& box = writer_.box(scene_.parts[p].mesh);
@@ -105,7 +113,7 @@ void SceneAssembly::choose_grids(std::span<const GltfLevel> levels) {
             writer_.quantise(scene_.parts[p].mesh, grid->second);
     for (std::size_t p = 0; p < scene_.parts.size(); ++p)
         if (const auto grid = grids.find(find(p)); grid != grids.end())
-            for (const std::size_t n : nodes_.users(scene_.parts[p].mesh)) nodes_.apply_grid(n, grid->second);
+            for (std::size_t& n : users_[scene_.parts[p].mesh]) n = nodes_.apply_grid(n, grid->second);
     std::map<std::size_t, Grid> by_skin;
     for (std::size_t s = 0; s < skins; ++s)
         if (const auto grid = grids.find(find(scene_.parts.size() + s)); grid != grids.end())
@@ -172,24 +180,31 @@ void SceneAssembly::drop_accessor(std::size_t accessor) {
     dropped_views_.insert(number);
 }
 
-double SceneAssembly::radius_of(const Mesh& mesh, std::size_t document_mesh) const {
-    double least[3], most[3];
-    std::fill(least, least + 3, std::numeric_limits<double>::infinity());
-    std::fill(most, most + 3, -std::numeric_limits<double>::infinity());
+std::vector<double> SceneAssembly::radii(const Mesh& mesh) const {
+    constexpr float kFar = std::numeric_limits<float>::infinity();
+    struct Box {
+        float least[3] = {kFar, kFar, kFar}, most[3] = {-kFar, -kFar, -kFar};
+    };
+    std::vector<Box> boxes(scene_.document->root["meshes"].size());
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-        if (scene_.primitives[mesh.groups.empty() ? 0 : mesh.groups[t]].mesh != document_mesh) continue;
+        Box& box = boxes[scene_.primitives[mesh.groups.empty() ? 0 : mesh.groups[t]].mesh];
         for (const std::uint32_t v : mesh.triangles[t]) {
             const float p[3] = {mesh.positions[v].x, mesh.positions[v].y, mesh.positions[v].z};
             for (std::size_t c = 0; c < 3; ++c) {
-                least[c] = std::min(least[c], double(p[c]));
-                most[c] = std::max(most[c], double(p[c]));
+                box.least[c] = std::min(box.least[c], p[c]);
+                box.most[c] = std::max(box.most[c], p[c]);
             }
         }
     }
-    double square = 0;
-    for (std::size_t c = 0; c < 3; ++c)
-        if (most[c] > least[c]) square += (most[c] - least[c]) * (most[c] - least[c]);
-    return 0.5 * std::sqrt(square);
+    std::vector<double> out;
+    for (const Box& box : boxes) {
+        double square = 0;
+        for (std::size_t c = 0; c < 3; ++c)
+            if (const double side = double(box.most[c]) - double(box.least[c]); side > 0)
+                square += side * side;
+        out.push_back(0.5 * std::sqrt(square));
+    }
+    return out;
 }
 
 /// All levels name vertices of the first, which keeps those that any level names.
@@ -240,6 +255,8 @@ Status SceneAssembly::write_meshes(std::span<const GltfLevel> levels) {
     shown_at_.assign(scene_.primitives.size(), -1);
     mesh_at_.assign(scene_.parts.size(), std::vector<std::size_t>(levels.size(), kNone));
     // By level, then by part, so that a viewer that wants one level reads one range.
+    std::vector<std::vector<std::size_t>> groups(meshes.size());
+    for (std::size_t g = 0; g < scene_.primitives.size(); ++g) groups[scene_.primitives[g].mesh].push_back(g);
     std::vector<OrderedJson> templates;
     for (const ScenePart& part : scene_.parts) templates.push_back(std::move(meshes[part.mesh]));
     for (const ScenePart& part : scene_.parts) meshes[part.mesh] = nullptr;
@@ -248,9 +265,8 @@ Status SceneAssembly::write_meshes(std::span<const GltfLevel> levels) {
             OrderedJson mesh = templates[p];
             OrderedJson& all = primitives_of(mesh);
             std::vector<std::size_t> group_of(all.size(), kNone);
-            for (std::size_t g = 0; g < scene_.primitives.size(); ++g)
-                if (scene_.primitives[g].mesh == scene_.parts[p].mesh)
-                    group_of[scene_.primitives[g].primitive] = g;
+            for (const std::size_t g : groups[scene_.parts[p].mesh])
+                group_of.at(scene_.primitives[g].primitive) = g;
             OrderedJson kept = OrderedJson::array();
             for (std::size_t i = 0; i < all.size(); ++i) {
                 const std::size_t g = group_of[i];
@@ -287,9 +303,10 @@ Status SceneAssembly::write_meshes(std::span<const GltfLevel> levels) {
 }
 
 void SceneAssembly::place_levels(std::span<const GltfLevel> levels) {
+    const std::vector<double> radius = radii(levels[0].mesh);
     for (std::size_t p = 0; p < scene_.parts.size(); ++p) {
         const auto& at = mesh_at_[p];
-        const auto users = nodes_.users(scene_.parts[p].mesh);
+        const auto& users = users_[scene_.parts[p].mesh];
         if (at[0] == kNone) {
             for (const std::size_t n : users) nodes_.take_mesh(n);
             continue;
@@ -303,8 +320,7 @@ void SceneAssembly::place_levels(std::span<const GltfLevel> levels) {
             vanishes = at[k] == kNone;
             if (k > 0 && !vanishes) meshes.push_back(at[k]);
         }
-        const double radius = radius_of(levels[0].mesh, scene_.parts[p].mesh);
-        std::vector<double> coverage = screen_coverage(errors, radius, format_.screen);
+        std::vector<double> coverage = screen_coverage(errors, radius[scene_.parts[p].mesh], format_.screen);
         if (vanishes) coverage.pop_back();
         for (const std::size_t n : users) nodes_.add_levels(n, meshes, coverage);
     }

@@ -43,13 +43,15 @@ class SceneAssembly {
     Status write_meshes(std::span<const GltfLevel> levels);
     Status share_vertices(std::span<const GltfLevel> levels);
     void place_levels(std::span<const GltfLevel> levels);
-    double radius_of(const Mesh& mesh, std::size_t document_mesh) const;
+    /// By mesh of the document, of a ball around the level's triangles.
+    std::vector<double> radii(const Mesh& mesh) const;
 
     const Scene& scene_;
     const SceneFormat& format_;
     OrderedJson root_;
     GeometrySink sink_;
     NodeSurgery nodes_;
+    std::vector<std::vector<std::size_t>> users_;  // nodes, by mesh of the document
     PrimitiveWriter writer_;
     std::vector<std::vector<PrimitiveCut>> cuts_;  // by level, by group
     /// By part, by level: the mesh in the written document, or none.
