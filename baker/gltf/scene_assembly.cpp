@@ -56,6 +56,7 @@ SceneAssembly::SceneAssembly(const Scene& scene, const SceneFormat& format)
       root_(scene.document->root),
       sink_(root_, format.meshopt),
       nodes_(root_),
+      users_(nodes_.users()),
       writer_(scene, format, sink_) {}
 
 /// Meshes that a skin moves share a grid with all meshes of that skin, since the grid goes into its
