@@ -3,6 +3,7 @@
 #include "scene_assembly.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <functional>
@@ -208,45 +209,67 @@ std::vector<double> SceneAssembly::radii(const Mesh& mesh) const {
     return out;
 }
 
-/// All levels name vertices of the first, which keeps those that any level names.
-Status SceneAssembly::share_vertices(std::span<const GltfLevel> levels) {
-    const Mesh& finest = levels[0].mesh;
-    for (std::size_t k = 1; k < levels.size(); ++k) {
-        const Mesh& mesh = levels[k].mesh;
-        const std::string name = "level " + std::to_string(k);
-        bool same = mesh.positions.size() <= finest.positions.size() &&
-                    std::memcmp(mesh.positions.data(), finest.positions.data(),
-                                mesh.positions.size() * sizeof(Float3)) == 0;
-        for (std::size_t a = 0; same && a < mesh.attributes.size(); ++a)
-            same = std::memcmp(mesh.attributes[a].values.data(), finest.attributes[a].values.data(),
-                               mesh.attributes[a].values.size() * sizeof(float)) == 0;
-        if (!same)
-            return fault(name +
-                         " has vertices of its own: levels share them only where every vertex stays "
-                         "at its place (placement endpoint)");
-    }
+/// One vertex array a primitive: the finest level's vertices, then those of coarser ones that are not among
+/// them, of which there are none where vertices only ever take the place of others (placement endpoint).
+Mesh SceneAssembly::share_vertices(std::span<const GltfLevel> levels) {
+    Mesh all = levels[0].mesh;
+    all.triangles.clear();
+    all.groups.clear();
     for (std::size_t g = 0; g < scene_.primitives.size(); ++g) {
-        std::vector<std::uint32_t> all;
-        for (const auto& level : cuts_)
-            all.insert(all.end(), level[g].vertices.begin(), level[g].vertices.end());
-        std::sort(all.begin(), all.end());
-        all.erase(std::unique(all.begin(), all.end()), all.end());
-        for (auto& level : cuts_) {
-            PrimitiveCut& cut = level[g];
-            if (cut.corners.empty()) continue;
-            for (std::uint32_t& v : cut.corners)
-                v = std::uint32_t(std::lower_bound(all.begin(), all.end(), cut.vertices[v]) - all.begin());
-            cut.vertices = all;
+        const auto& stored = scene_.primitives[g].attributes;
+        const auto each = [&](const Mesh& mesh, std::uint32_t v, auto use) {
+            const Float3& p = mesh.positions[v];
+            use(p.x), use(p.y), use(p.z);
+            for (const StoredAttribute& attribute : stored) {
+                const Attribute& from = mesh.attributes[attribute.attribute];
+                for (std::size_t c = 0; c < from.components; ++c)
+                    use(from.values[std::size_t{v} * from.components + c]);
+            }
+        };
+        const auto row = [&](const Mesh& mesh, std::uint32_t v) {
+            std::vector<std::uint32_t> bits;
+            each(mesh, v, [&](float value) { bits.push_back(std::bit_cast<std::uint32_t>(value)); });
+            return bits;
+        };
+        std::map<std::vector<std::uint32_t>, std::uint32_t> place;
+        std::vector<std::uint32_t> vertices;
+        for (std::size_t k = 0; k < levels.size(); ++k) {
+            PrimitiveCut& cut = cuts_[k][g];
+            std::vector<std::uint32_t> at(cut.vertices.size());
+            for (std::size_t i = 0; i < at.size(); ++i) {
+                const std::uint32_t v = cut.vertices[i];
+                const auto [found, fresh] =
+                    place.try_emplace(row(levels[k].mesh, v), std::uint32_t(vertices.size()));
+                at[i] = found->second;
+                if (!fresh) continue;
+                if (k == 0) {
+                    vertices.push_back(v);
+                    continue;
+                }
+                vertices.push_back(std::uint32_t(all.positions.size()));
+                all.positions.push_back(levels[k].mesh.positions[v]);
+                for (std::size_t a = 0; a < all.attributes.size(); ++a) {
+                    const Attribute& from = levels[k].mesh.attributes[a];
+                    const auto begin = from.values.begin() + std::ptrdiff_t(std::size_t{v} * from.components);
+                    all.attributes[a].values.insert(all.attributes[a].values.end(), begin,
+                                                    begin + std::ptrdiff_t(from.components));
+                }
+            }
+            for (std::uint32_t& corner : cut.corners) corner = at[corner];
         }
+        for (auto& level : cuts_)
+            if (!level[g].corners.empty()) level[g].vertices = vertices;
     }
-    return Ok{};
+    return all;
 }
 
 Status SceneAssembly::write_meshes(std::span<const GltfLevel> levels) {
     for (const GltfLevel& level : levels)
         cuts_.push_back(split_by_group(level.mesh, scene_.primitives.size()));
+    Mesh shared;
+    std::vector<OrderedJson> finest(scene_.primitives.size());
     if (format_.shared_vertices) {
-        if (Status status = share_vertices(levels); !status.ok()) return status;
+        shared = share_vertices(levels);
     } else if (format_.meshopt) {
         for (auto& level : cuts_)
             for (PrimitiveCut& cut : level)
@@ -275,8 +298,15 @@ Status SceneAssembly::write_meshes(std::span<const GltfLevel> levels) {
                     const PrimitiveCut& cut = cuts_[k][g];
                     if (cut.corners.empty()) continue;
                     OrderedJson primitive = OrderedJson::object();
-                    if (Status status = writer_.write(levels[k].mesh, g, cut, primitive); !status.ok())
-                        return status;
+                    if (format_.shared_vertices && !finest[g].is_null()) {
+                        primitive = finest[g];
+                        primitive["indices"] = sink_.add_indices(cut.corners, cut.vertices.size());
+                    } else {
+                        const Mesh& from = format_.shared_vertices ? shared : levels[k].mesh;
+                        if (Status status = writer_.write(from, g, cut, primitive); !status.ok())
+                            return status;
+                        finest[g] = primitive;
+                    }
                     for (auto& [key, value] : all[i].items())
                         if (key == "extensions")
                             primitive[key].update(value);

@@ -41,7 +41,7 @@ class SceneAssembly {
     void quantise_skins(const std::map<std::size_t, Grid>& grids);
     void drop_accessor(std::size_t accessor);
     Status write_meshes(std::span<const GltfLevel> levels);
-    Status share_vertices(std::span<const GltfLevel> levels);
+    Mesh share_vertices(std::span<const GltfLevel> levels);
     void place_levels(std::span<const GltfLevel> levels);
     /// By mesh of the document, of a ball around the level's triangles.
     std::vector<double> radii(const Mesh& mesh) const;

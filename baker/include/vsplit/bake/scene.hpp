@@ -84,8 +84,8 @@ struct SceneFormat {
                              ///< normals and tangents, 16-bit colours and joint weights.
     bool draco = false;      ///< KHR_draco_mesh_compression. Not with the others.
     bool meshopt = false;    ///< EXT_meshopt_compression of the numbers as they are.
-    /// Levels share the vertices of the finest and differ in indices only: kArgument unless each vertex has
-    /// the same values at every level.
+    /// Levels share one vertex array a primitive and differ in indices only. It is no longer than the finest
+    /// level's where all that a coarser level has is a vertex of the finest (placement endpoint).
     bool shared_vertices = false;
     Screen screen;
 };
