@@ -37,12 +37,22 @@ Result<CollapseResult> collapse(const Mesh& mesh, const CollapseOptions& options
     if (!within(options.min_normal_cosine, -1, 1)) return refuse("min_normal_cosine must be -1 to 1");
     if (!within(options.min_quality, 0, 1)) return refuse("min_quality must be 0 to 1");
     const Error cancelled{ErrorCode::kCancelled, "cancelled", Error::kNowhere, 0};
+    if (!options.part_of.empty() && options.part_of.size() != mesh.positions.size())
+        return refuse("part_of must have one number per vertex");
     CollapseResult result;
     double start = cpu_seconds();
-    {
-        Collapser collapser(mesh, options);
-        if (!collapser.run(progress)) return cancelled;
+    const auto record = [&](Collapser&& collapser) {
+        if (!collapser.run(progress)) return false;
         result.mesh = collapser.finish(result.report);
+        return true;
+    };
+    if (mesh.attributes.empty() && mesh.groups.empty()) {
+        if (!record(Collapser(mesh, options))) return cancelled;
+    } else {
+        const PointMesh points = points_of(mesh, options.part_of);
+        if (!record(Collapser(points, mesh, options))) return cancelled;
+        result.report.unused_vertices = points.unused;
+        result.report.degenerate_triangles = points.degenerate;
     }
     result.report.collapse_cpu_seconds = cpu_seconds() - start;
     if (options.calibrate) {

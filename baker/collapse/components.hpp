@@ -4,6 +4,7 @@
 // The connected parts of a mesh, which may vanish as a whole once they are small against the error.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <vector>
 
@@ -21,7 +22,10 @@ class Components {
     std::uint32_t count() const { return static_cast<std::uint32_t>(triangles_.size()); }
     std::uint32_t of(std::uint32_t vertex) const { return component_[vertex]; }
     std::uint32_t live_triangles(std::uint32_t component) const { return triangles_[component]; }
-    void lose(std::uint32_t component, std::uint32_t triangles) { triangles_[component] -= triangles; }
+    /// May run at once for several regions of the mesh.
+    void lose(std::uint32_t component, std::uint32_t triangles) {
+        std::atomic_ref(triangles_[component]).fetch_sub(triangles, std::memory_order_relaxed);
+    }
 
     /// How far its points may be from the rest of the mesh, working units: its extent and the gap to the
     /// nearest larger part.

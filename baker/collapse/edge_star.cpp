@@ -10,6 +10,8 @@ VSPLIT_CLONES void EdgeStar::gather(const StarMesh& mesh, std::uint32_t first, s
     pu = mesh.position(u);
     pv = mesh.position(v);
     a.clear();
+    triangles.clear();
+    opposite_triangles.clear();
     b.clear();
     opposite.clear();
     opposite_places.clear();
@@ -23,10 +25,12 @@ VSPLIT_CLONES void EdgeStar::gather(const StarMesh& mesh, std::uint32_t first, s
             if (next != other && last != other) {
                 a.push_back(next);
                 b.push_back(last);
+                if (mesh.has_wedges()) triangles.push_back(t);
             } else if (apex == u) {
                 opposite.push_back(next == other ? last : next);
                 opposite_places.push_back(mesh.position(opposite.back()));
                 forward.push_back(next == other);
+                if (mesh.has_wedges()) opposite_triangles.push_back(t);
             }
         }
         if (apex == u) first_size = a.size();

@@ -29,9 +29,11 @@ struct EdgeStar {
     std::size_t first_size = 0;  ///< Those at u, which come first.
     /// Their other corners, and the places; the last of them fills up four.
     std::vector<std::uint32_t> a, b;
+    std::vector<std::uint32_t> triangles;  ///< Only of meshes with wedges; so are opposite_triangles.
     std::vector<Wings> wings;
     std::vector<std::uint32_t> opposite;  ///< Third vertices of the triangles on the edge.
     std::vector<Double3> opposite_places;
+    std::vector<std::uint32_t> opposite_triangles;
     std::vector<char> forward;  ///< The triangle on the edge runs along it from u to v.
 
     void gather(const StarMesh& mesh, std::uint32_t first, std::uint32_t second);

@@ -10,13 +10,31 @@ namespace {
 /// The edge's triangles do not run along it once in each direction.
 bool is_special(const StarMesh& mesh, std::uint32_t u, std::uint32_t v) {
     int out = 0, in = 0;
+    bool seam = false;
+    std::uint32_t first = kNoVertex;
     for (const std::uint32_t t : mesh.star(u)) {
         const Triangle& c = mesh.triangle(t);
-        const int k = c[0] == u ? 0 : c[1] == u ? 1 : 2;
-        out += c[(k + 1) % 3] == v;
-        in += c[(k + 2) % 3] == v;
+        const std::size_t k = c[0] == u ? 0 : c[1] == u ? 1 : 2;
+        const std::size_t next = (k + 1) % 3, last = (k + 2) % 3;
+        out += c[next] == v;
+        in += c[last] == v;
+        if (!mesh.has_wedges() || (c[next] != v && c[last] != v)) continue;
+        if (first == kNoVertex) {
+            first = t;
+            continue;
+        }
+        const Triangle& other = mesh.triangle(first);
+        const std::size_t other_k = other[0] == u   ? 0
+                                    : other[1] == u ? 1
+                                                    : 2,
+                          other_v = other[0] == v   ? 0
+                                    : other[1] == v ? 1
+                                                    : 2;
+        seam |= mesh.corners(first)[other_k] != mesh.corners(t)[k] ||
+                mesh.corners(first)[other_v] != mesh.corners(t)[c[next] == v ? next : last] ||
+                mesh.group(first) != mesh.group(t);
     }
-    return out != 1 || in != 1;
+    return seam || out != 1 || in != 1;
 }
 
 }  // namespace
@@ -28,6 +46,9 @@ Fold fold_rule(const StarMesh& mesh, std::uint32_t u, std::uint32_t v) {
     if (ku != VertexKind::kInner && kv != VertexKind::kInner && !is_special(mesh, u, v)) return Fold::kNever;
     if (ku == VertexKind::kFixed) return Fold::kIntoFirst;
     if (kv == VertexKind::kFixed) return Fold::kIntoSecond;
+    // Onto a seam, but not with it: the other side's attributes belong to the place where it is.
+    if (ku != VertexKind::kInner && mesh.vertex(u).seam && kv == VertexKind::kInner) return Fold::kIntoFirst;
+    if (kv != VertexKind::kInner && mesh.vertex(v).seam && ku == VertexKind::kInner) return Fold::kIntoSecond;
     return Fold::kAnywhere;
 }
 
@@ -45,16 +66,39 @@ bool Guards::keeps_topology(const EdgeStar& star) {
         stamp_ = 0;
     }
     const std::uint32_t seen_first = ++stamp_, shared = ++stamp_;
-    for (std::size_t i = 0; i < star.first_size; ++i) stamps_[star.a[i]] = stamps_[star.b[i]] = seen_first;
-    for (const std::uint32_t w : star.opposite) stamps_[w] = shared;
+    std::uint32_t* const stamps = stamps_.data() - low_;
+    for (std::size_t i = 0; i < star.first_size; ++i) stamps[star.a[i]] = stamps[star.b[i]] = seen_first;
+    for (const std::uint32_t w : star.opposite) stamps[w] = shared;
     for (std::size_t i = star.first_size; i < star.size; ++i)
-        if (stamps_[star.a[i]] == seen_first || stamps_[star.b[i]] == seen_first) return false;
+        if (stamps[star.a[i]] == seen_first || stamps[star.b[i]] == seen_first) return false;
     // ... nor an edge between two of them: both ends would make the same triangle of it.
     bool first_has = false, second_has = false;
     for (std::size_t i = 0; i < star.size; ++i)
-        if (stamps_[star.a[i]] == shared && stamps_[star.b[i]] == shared)
+        if (stamps[star.a[i]] == shared && stamps[star.b[i]] == shared)
             (i < star.first_size ? first_has : second_has) = true;
     return !(first_has && second_has);
+}
+
+bool Guards::folds_back(const EdgeStar& star, std::size_t i, Double3 normal, bool keeps_folds) const {
+    // Against the others of the new fan that it shares an edge with.
+    for (std::size_t j = 0; j < star.size; ++j) {
+        if (j == i || (star.a[j] != star.b[i] && star.b[j] != star.a[i])) continue;
+        const EdgeStar::Wings& other = star.wings[j / 4];
+        if (is_folded(normal, {other.after.x[j % 4], other.after.y[j % 4], other.after.z[j % 4]}))
+            return true;
+    }
+    // Against the triangle beyond.
+    for (const std::uint32_t t : mesh_.star(star.a[i])) {
+        const Triangle& c = mesh_.triangle(t);
+        const auto is_corner = [&](std::uint32_t v) { return c[0] == v || c[1] == v || c[2] == v; };
+        if (!is_corner(star.b[i]) || is_corner(star.u) || is_corner(star.v)) continue;
+        const Double3 beyond = mesh_.normal(c);
+        if (!is_folded(normal, beyond)) continue;
+        const EdgeStar::Wings& own = star.wings[i / 4];
+        const Double3 before{own.before.x[i % 4], own.before.y[i % 4], own.before.z[i % 4]};
+        if (!keeps_folds || !is_folded(before, beyond)) return true;
+    }
+    return false;
 }
 
 VSPLIT_CLONES bool Guards::keeps_shape(const EdgeStar& star, Double3 place,
@@ -68,6 +112,7 @@ VSPLIT_CLONES bool Guards::keeps_shape(const EdgeStar& star, Double3 place,
     const double cosine = strictness.min_normal_cosine, cosine2 = cosine * cosine,
                  quality2 = strictness.min_quality * strictness.min_quality;
     const Lanes3 to = lanes(place);
+    const bool near_fold = mesh_.vertex(star.u).folded || mesh_.vertex(star.v).folded;
     for (std::size_t i = 0; i < star.wings.size(); ++i) {
         const EdgeStar::Wings& wing = star.wings[i];
         const Lanes before2 = length2(wing.before), after2 = length2(wing.after);
@@ -83,6 +128,13 @@ VSPLIT_CLONES bool Guards::keeps_shape(const EdgeStar& star, Double3 place,
         const LaneMask sliver = (12.0 * after2 < quality2 * edges * edges) &
                                 (after2 * edges_before * edges_before < before2 * edges * edges);
         if (any(~keeps_area | turns | sliver)) return false;
+        const LaneMask much = (turn < 0.0) | (turn2 < 0.8 * before2 * after2);
+        if (near_fold || any(much))
+            for (std::size_t k = 0; k < 4 && 4 * i + k < star.size; ++k)
+                if ((near_fold || much[k]) &&
+                    folds_back(star, 4 * i + k, {wing.after.x[k], wing.after.y[k], wing.after.z[k]},
+                               !strictness.mend_folds))
+                    return false;
         if (!strictness.keep_orientation) continue;
         const auto opposes = [&](const std::uint32_t* four) VSPLIT_INLINE_LAMBDA {
             alignas(32) Lanes normal[4];

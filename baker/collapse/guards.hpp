@@ -23,17 +23,31 @@ enum class Fold : std::uint8_t {
 /// By the kinds of the ends, and whether the edge is special.
 Fold fold_rule(const StarMesh& mesh, std::uint32_t u, std::uint32_t v);
 
+/// Two triangles of these normals, with a common edge, lie back on each other.
+inline bool is_folded(Double3 a, Double3 b) {
+    const double along = dot(a, b);
+    return along < 0 && along * along > 0.85 * 0.85 * length2(a) * length2(b);
+}
+
 /// How strict the guards are; later passes get past what stops the first.
 struct Strictness {
     double min_normal_cosine;
     double min_quality;
     std::size_t max_valence;
+    bool mend_folds;        ///< A triangle that lay back on another may change only if it does not after.
     bool keep_orientation;  ///< No triangle may oppose the input's normals around two of its corners.
 };
 
 class Guards {
   public:
-    explicit Guards(const StarMesh& mesh) : mesh_(mesh), stamps_(mesh.vertex_count(), 0) {}
+    explicit Guards(const StarMesh& mesh) : mesh_(mesh) {}
+
+    /// From now on only stars whose vertices are `low` to `high` - 1 are asked about.
+    void open(std::uint32_t low, std::uint32_t high) {
+        low_ = low;
+        stamps_.assign(high - low, 0);
+        stamp_ = 0;
+    }
 
     /// The link condition, and what else collapsing the edge would do to the topology.
     bool keeps_topology(const EdgeStar& star);
@@ -43,8 +57,13 @@ class Guards {
                      const Strictness& strictness) const;
 
   private:
+    /// Whether triangle `i` of the new fan, of this normal, lies back on one beside it. `keeps_folds`: those
+    /// that were there before do not count.
+    bool folds_back(const EdgeStar& star, std::size_t i, Double3 normal, bool keeps_folds) const;
+
     const StarMesh& mesh_;
-    std::vector<std::uint32_t> stamps_;
+    std::uint32_t low_ = 0;
+    std::vector<std::uint32_t> stamps_;  // of low_ and up
     std::uint32_t stamp_ = 0;
 };
 

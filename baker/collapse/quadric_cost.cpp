@@ -23,9 +23,33 @@ VSPLIT_CLONES void price_edges(const StarMesh& mesh, std::uint32_t u, std::span<
                                   {rows[2][2], rows[2][3], rows[3][0]},
                                   rows[3][1]};
         const EdgeQuadric<Lanes> edges(first, second, options);
-        const Lanes price = edges.price(edges.best().cost);
+        const Lanes cost = edges.best().cost;
+        const Lanes price = select(cost < edges.noise(), lanes(double(kUnsurePrice)), edges.price(cost));
         for (std::size_t i = 0; i < 4 && begin + i < others.size(); ++i) prices[begin + i] = float(price[i]);
     }
+}
+
+Shape<double> exact_shape(const StarMesh& mesh, std::uint32_t v, double boundary_weight,
+                          std::vector<Neighbour>& scratch) {
+    TrianglePart<double> sum;
+    for (const std::uint32_t t : mesh.star(v))
+        sum.add(TrianglePart<double>(mesh.normal(mesh.triangle(t))), 1);
+    const Double3 p = mesh.position(v);
+    if (mesh.kind(v) != VertexKind::kInner) {
+        neighbours_of(mesh, v, scratch);
+        for (const Neighbour& n : scratch) {
+            if (!n.special()) continue;
+            const Double3 edge = mesh.position(n.vertex) - p;
+            const double e2 = length2(edge), weight = boundary_weight * std::sqrt(e2);
+            sum.quadric[0] += weight * (e2 - edge.x * edge.x);
+            sum.quadric[1] -= weight * edge.x * edge.y;
+            sum.quadric[2] -= weight * edge.x * edge.z;
+            sum.quadric[3] += weight * (e2 - edge.y * edge.y);
+            sum.quadric[4] -= weight * edge.y * edge.z;
+            sum.quadric[5] += weight * (e2 - edge.z * edge.z);
+        }
+    }
+    return {p, double(mesh.vertex(v).weight), sum.quadric, sum.area, sum.size};
 }
 
 VSPLIT_CLONES TrianglePart<double> update_ring(StarMesh& mesh, const EdgeStar& star) {

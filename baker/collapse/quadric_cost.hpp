@@ -153,6 +153,9 @@ class EdgeQuadric {
 
     VSPLIT_INLINE Vec3<Real> middle() const { return middle_; }
 
+    /// Of shapes stored in floats, a cost below this says little: the parts of large triangles cancel out.
+    VSPLIT_INLINE Real noise() const { return 1e-7 * length2(half_) * trace_; }
+
     /// The cost in the queue: never negative, and among the free ones short edges come first.
     VSPLIT_INLINE Real price(Real cost) const {
         const Real edge2 = length2(half_);
@@ -165,8 +168,11 @@ class EdgeQuadric {
     Real volume_rhs_, volume_scale_, constant_, trace_, pull_;
 };
 
+/// A price that stands for one lost in rounding.
+inline constexpr float kUnsurePrice = -1;
+
 /// Prices the edges from `u` to each of `others`, optimally placed: the same as EdgeQuadric<double>, four at
-/// a time.
+/// a time; kUnsurePrice where the cost is below noise().
 void price_edges(const StarMesh& mesh, std::uint32_t u, std::span<const std::uint32_t> others,
                  const CollapseOptions& options, float* prices);
 
@@ -212,31 +218,21 @@ inline void set_part(Vertex& vertex, const TrianglePart<double>& part) {
 /// the new vertex's.
 TrianglePart<double> update_ring(StarMesh& mesh, const EdgeStar& star);
 
-/// Adds a boundary edge's part: its length to the third power times the squared distance to its line (after
-/// Lindstrom and Turk 1998, section 4.2, in the dimension of the triangles' parts).
-inline void add_boundary(Vertex& shape, Double3 edge, double boundary_weight) {
-    const double e2 = length2(edge), weight = boundary_weight * std::sqrt(e2);
-    shape.quadric[0] += float(weight * (e2 - edge.x * edge.x));
-    shape.quadric[1] -= float(weight * edge.x * edge.y);
-    shape.quadric[2] -= float(weight * edge.x * edge.z);
-    shape.quadric[3] += float(weight * (e2 - edge.y * edge.y));
-    shape.quadric[4] -= float(weight * edge.y * edge.z);
-    shape.quadric[5] += float(weight * (e2 - edge.z * edge.z));
-}
+/// A vertex's shape from scratch, not rounded to floats. A boundary edge brings its length to the third power
+/// times the squared distance to its line (after Lindstrom and Turk 1998, section 4.2, in the dimension of
+/// the triangles' parts).
+Shape<double> exact_shape(const StarMesh& mesh, std::uint32_t v, double boundary_weight,
+                          std::vector<Neighbour>& scratch);
 
-/// The shape from scratch; the weight stays.
+/// The stored shape from scratch; the weight stays.
 inline void rebuild_shape(StarMesh& mesh, std::uint32_t v, double boundary_weight,
                           std::vector<Neighbour>& scratch) {
-    TrianglePart<double> sum;
-    for (const std::uint32_t t : mesh.star(v))
-        sum.add(TrianglePart<double>(mesh.normal(mesh.triangle(t))), 1);
-    Vertex& shape = mesh.vertex(v);
-    set_part(shape, sum);
-    if (mesh.kind(v) == VertexKind::kInner) return;
-    neighbours_of(mesh, v, scratch);
-    const Double3 p = mesh.position(v);
-    for (const Neighbour& n : scratch)
-        if (n.special()) add_boundary(shape, mesh.position(n.vertex) - p, boundary_weight);
+    const Shape<double> exact = exact_shape(mesh, v, boundary_weight, scratch);
+    TrianglePart<double> part;
+    part.quadric = exact.quadric;
+    part.area = exact.area;
+    part.size = exact.size;
+    set_part(mesh.vertex(v), part);
 }
 
 }  // namespace vsplit::bake

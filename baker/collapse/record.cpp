@@ -6,24 +6,77 @@
 #include <cstring>
 
 namespace vsplit::bake {
+namespace {
+
+/// How many steps ahead memory is asked for.
+constexpr std::size_t kAhead = 12;
+
+}  // namespace
 
 void Record::add(std::uint32_t child, std::uint32_t parent, const Float3& parent_position,
                  float parent_weight, float error) {
+    error_ = std::max(error_, error);
     steps_.push_back({child, parent, std::uint32_t(corners_changed.size()), std::uint32_t(removed.size()),
-                      parent_position, error});
+                      parent_position, error_});
     if (has_weights_) parent_weights_.push_back(parent_weight);
 }
 
 void Record::add_vanished(const std::vector<std::uint32_t>& vertices, float error) {
+    error_ = std::max(error_, error);
+    const auto number = std::uint32_t(vanished_begins_.size());
     vanished_begins_.push_back(std::uint32_t(vanished_.size()));
     vanished_.insert(vanished_.end(), vertices.begin(), vertices.end());
     steps_.push_back({kNoVertex,
-                      kNoVertex,
+                      number,
                       std::uint32_t(corners_changed.size()),
                       std::uint32_t(removed.size()),
                       {},
-                      error});
+                      error_});
     if (has_weights_) parent_weights_.push_back(1);
+}
+
+void Record::append(const Record& other, std::size_t begin, std::size_t end) {
+    if (begin == end) return;
+    const auto ends_before = [&](std::size_t step, auto member) {
+        return step == 0 ? 0u : other.steps_[step - 1].*member;
+    };
+    const std::uint32_t corners = ends_before(begin, &Step::corners_end),
+                        triangles = ends_before(begin, &Step::removed_end);
+    const auto corners_now = std::uint32_t(corners_changed.size()),
+               triangles_now = std::uint32_t(removed.size());
+    corners_changed.insert(corners_changed.end(), other.corners_changed.begin() + corners,
+                           other.corners_changed.begin() + ends_before(end, &Step::corners_end));
+    removed.insert(removed.end(), other.removed.begin() + triangles,
+                   other.removed.begin() + ends_before(end, &Step::removed_end));
+    for (std::size_t i = begin; i < end; ++i) {
+        Step step = other.steps_[i];
+        step.corners_end += corners_now - corners;
+        step.removed_end += triangles_now - triangles;
+        error_ = step.error = std::max(error_, step.error);
+        if (step.child == kNoVertex) {
+            const std::uint32_t from = other.vanished_begins_[step.parent],
+                                to = step.parent + 1 < other.vanished_begins_.size()
+                                         ? other.vanished_begins_[step.parent + 1]
+                                         : std::uint32_t(other.vanished_.size());
+            step.parent = std::uint32_t(vanished_begins_.size());
+            vanished_begins_.push_back(std::uint32_t(vanished_.size()));
+            vanished_.insert(vanished_.end(), other.vanished_.begin() + from, other.vanished_.begin() + to);
+        }
+        steps_.push_back(step);
+    }
+    if (has_weights_)
+        parent_weights_.insert(parent_weights_.end(), other.parent_weights_.begin() + std::ptrdiff_t(begin),
+                               other.parent_weights_.begin() + std::ptrdiff_t(end));
+}
+
+void Record::clear() {
+    corners_changed.clear();
+    removed.clear();
+    steps_.clear();
+    parent_weights_.clear();
+    vanished_.clear();
+    vanished_begins_.clear();
+    error_ = 0;
 }
 
 ProgressiveMesh Record::finish(const StarMesh& mesh, const std::vector<float>& weights,
@@ -64,6 +117,17 @@ ProgressiveMesh Record::finish(const StarMesh& mesh, const std::vector<float>& w
     out.moves.reserve(steps_.size());
     for (std::size_t i = steps_.size(); i-- > 0;) {
         const Step& step = steps_[i];
+        if (i >= kAhead) {
+            const Step& later = steps_[i - kAhead];
+            if (later.parent < vertex_birth.size()) fetch_ahead(&vertex_birth[later.parent]);
+            const std::uint32_t corner = corners_changed.empty() ? 0 : later.corners_end,
+                                first = later.removed_end;
+            for (std::uint32_t j = corner; j < std::min(corner + 4, std::uint32_t(corners_changed.size()));
+                 ++j)
+                fetch_ahead(&triangle_birth[corners_changed[j] / 3]);
+            for (std::uint32_t j = first; j < std::min(first + 2, std::uint32_t(removed.size())); ++j)
+                mesh.prefetch_triangle(removed[j]);
+        }
         const std::uint32_t corners_begin = i == 0 ? 0 : steps_[i - 1].corners_end;
         const std::uint32_t removed_begin = i == 0 ? 0 : steps_[i - 1].removed_end;
         if (step.child == kNoVertex) {
@@ -97,7 +161,10 @@ ProgressiveMesh Record::finish(const StarMesh& mesh, const std::vector<float>& w
 
     // A vertex that died has its last place in the mesh: the one it is born at.
     out.positions.reserve(order.size());
-    for (const std::uint32_t v : order) out.positions.push_back(mesh.raw_position(v));
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        if (i + kAhead < order.size()) mesh.prefetch_vertex(order[i + kAhead]);
+        out.positions.push_back(mesh.raw_position(order[i]));
+    }
     if (has_weights_) {
         out.weights.reserve(order.size());
         for (const std::uint32_t v : order) out.weights.push_back(weights[v]);

@@ -23,11 +23,27 @@ class Record {
              float error);
     /// A component went: `vertices` and (in `removed`) its triangles.
     void add_vanished(const std::vector<std::uint32_t>& vertices, float error);
+    /// Appends steps `begin` to `end` - 1 of another record.
+    void append(const Record& other, std::size_t begin, std::size_t end);
+    void clear();
 
     std::vector<std::uint32_t> corners_changed;  ///< 3 * triangle + corner.
     std::vector<std::uint32_t> removed;          ///< Triangles.
 
     std::size_t size() const { return steps_.size(); }
+
+    struct Step {
+        std::uint32_t child =
+            0;  ///< Or kNoVertex: a component vanished; the parent is its number among those.
+        std::uint32_t parent = 0;
+        std::uint32_t corners_end = 0;
+        std::uint32_t removed_end = 0;
+        Float3 parent_position;
+        float error = 0;
+    };
+    const std::vector<Step>& steps() const { return steps_; }
+    /// 1 without weights.
+    float parent_weight(std::size_t step) const { return has_weights_ ? parent_weights_[step] : 1.0f; }
 
     /// Reverses the record: births in the order of the splits. `weights` are the current ones of all vertices
     /// (empty: none), the dead ones' as they were when they went. `births`, if given, receives the StarMesh
@@ -36,18 +52,11 @@ class Record {
                            std::vector<std::uint32_t>* births);
 
   private:
-    struct Step {
-        std::uint32_t child;  ///< Or kNoVertex: a component vanished.
-        std::uint32_t parent;
-        std::uint32_t corners_end;
-        std::uint32_t removed_end;
-        Float3 parent_position;
-        float error;
-    };
     std::vector<Step> steps_;
     std::vector<float> parent_weights_;
     std::vector<std::uint32_t> vanished_;         // vertices of vanished components
     std::vector<std::uint32_t> vanished_begins_;  // where each of them begins
+    float error_ = 0;                             // the largest so far
     bool has_weights_;
 };
 

@@ -21,6 +21,9 @@ std::uint64_t spread(std::uint64_t x) {
     return (x | x << 2) & 0x1249249249249249u;
 }
 
+/// The arena's least growth, so that packing it, which looks at all vertices, stays rare.
+constexpr std::size_t kLeastRoom = 1 << 16;
+
 template <class Body>
 void parallel(std::size_t count, const Body& body) {
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 4096),
@@ -36,7 +39,10 @@ std::uint32_t find_root(std::vector<std::uint32_t>& roots, std::uint32_t i) {
 
 }  // namespace
 
-StarMesh::StarMesh(const Mesh& mesh) {
+StarMesh::StarMesh(const Mesh& mesh) : StarMesh(mesh, {}, {}) {}
+
+StarMesh::StarMesh(const Mesh& mesh, const std::vector<Triangle>& corners,
+                   const std::vector<std::uint32_t>& groups) {
     const std::size_t vertices = mesh.positions.size();
     Double3 low, high;
     for (std::size_t i = 0; i < vertices; ++i) {
@@ -81,8 +87,15 @@ StarMesh::StarMesh(const Mesh& mesh) {
     for (const Triangle& t : mesh.triangles) ++place[first_of(t) + 1];
     std::partial_sum(place.begin(), place.end(), place.begin());
     triangles_.resize(mesh.triangles.size());
-    for (const Triangle& t : mesh.triangles)
-        triangles_[place[first_of(t)]++] = {renumbered[t[0]], renumbered[t[1]], renumbered[t[2]]};
+    corners_.resize(corners.size());
+    groups_.resize(groups.size());
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+        const Triangle& t = mesh.triangles[i];
+        const std::uint32_t to = place[first_of(t)]++;
+        triangles_[to] = {renumbered[t[0]], renumbered[t[1]], renumbered[t[2]]};
+        if (!corners.empty()) corners_[to] = corners[i];
+        if (!groups.empty()) groups_[to] = groups[i];
+    }
 
     for (const Triangle& t : triangles_)
         for (const std::uint32_t v : t) ++vertices_[v].star_size;
@@ -92,10 +105,9 @@ StarMesh::StarMesh(const Mesh& mesh) {
         begin += v.star_size;
         v.star_size = 0;
     }
-    // Stars that outgrow their place move to the end; a fold adds what it takes away elsewhere, so this is
-    // ample.
-    arena_.reserve(std::size_t{begin} + begin / 2);
-    arena_.resize(begin);
+    // Stars that outgrow their place move to the end.
+    arena_.resize(begin + begin / 4 + 2 * vertices);
+    arena_end_ = begin;
     for (std::uint32_t t = 0; t < triangles_.size(); ++t)
         for (const std::uint32_t v : triangles_[t])
             arena_[vertices_[v].star_begin + vertices_[v].star_size++] = t;
@@ -127,7 +139,8 @@ void StarMesh::classify() {
                 if (special != 0 && special != 2) continue;
                 if (special == 2) {
                     const int a = curve[0]->out + curve[0]->in, b = curve[1]->out + curve[1]->in;
-                    if (a != b) continue;
+                    if (a != b || curve[0]->seam != curve[1]->seam) continue;
+                    vertices_[v].seam = curve[0]->seam;
                 }
                 // The link must hang together: otherwise several fans meet in this one point.
                 roots.resize(ring.size());
@@ -161,8 +174,8 @@ void StarMesh::classify() {
         vertices_.begin(), vertices_.end(), [](const Vertex& v) { return v.kind != VertexKind::kDead; }));
 }
 
-void StarMesh::fold(std::uint32_t child, std::uint32_t parent, std::vector<std::uint32_t>& corners_changed,
-                    std::vector<std::uint32_t>& removed) {
+std::size_t StarMesh::fold(std::uint32_t child, std::uint32_t parent, std::span<const WedgePair> pairs,
+                           std::vector<std::uint32_t>& corners_changed, std::vector<std::uint32_t>& removed) {
     const std::size_t first_removed = removed.size();
     const auto has = [&](std::uint32_t t, std::uint32_t v) {
         return triangles_[t][0] == v || triangles_[t][1] == v || triangles_[t][2] == v;
@@ -177,14 +190,16 @@ void StarMesh::fold(std::uint32_t child, std::uint32_t parent, std::vector<std::
 
     // The parent's star without the removed triangles, then the child's; in place if it fits.
     std::uint32_t size = 0;
+    std::size_t taken = 0;
     const std::uint32_t capacity = vertices_[parent].star_size;
     for (std::uint32_t i = 0; i < capacity; ++i) {
         const std::uint32_t t = arena_[vertices_[parent].star_begin + i];
         if (!has(t, child)) arena_[vertices_[parent].star_begin + size++] = t;
     }
     if (size + kept > capacity) {
-        const auto begin = static_cast<std::uint32_t>(arena_.size());
-        arena_.resize(begin + size + kept);
+        taken = size + kept;
+        const std::uint32_t begin =
+            std::atomic_ref(arena_end_).fetch_add(size + kept, std::memory_order_relaxed);
         std::copy_n(arena_.begin() + vertices_[parent].star_begin, size, arena_.begin() + begin);
         vertices_[parent].star_begin = begin;
     }
@@ -195,11 +210,15 @@ void StarMesh::fold(std::uint32_t child, std::uint32_t parent, std::vector<std::
         const std::uint32_t k = triangles_[t][0] == child ? 0 : triangles_[t][1] == child ? 1 : 2;
         triangles_[t][k] = parent;
         corners_changed.push_back(3 * t + k);
+        for (const WedgePair& pair : pairs)
+            if (corners_[t][k] == pair.child) {
+                corners_[t][k] = pair.parent;
+                break;
+            }
     }
     vertices_[parent].star_size = size;
     vertices_[child].star_size = 0;
     vertices_[child].kind = VertexKind::kDead;
-    --live_vertices_;
 
     for (const std::uint32_t t : gone)
         for (const std::uint32_t w : triangles_[t])
@@ -208,54 +227,87 @@ void StarMesh::fold(std::uint32_t child, std::uint32_t parent, std::vector<std::
                 auto* at = std::find(begin, begin + vertices_[w].star_size, t);
                 *at = begin[--vertices_[w].star_size];
             }
-    live_triangles_ -= static_cast<std::uint32_t>(gone.size());
+    return taken;
 }
 
-void StarMesh::vanish(std::span<const std::uint32_t> vertices, std::span<const std::uint32_t> triangles) {
+void StarMesh::grow_room(std::size_t entries) {
+    std::size_t used = 0;
+    for (const Vertex& v : vertices_) used += v.star_size;
+    const std::size_t more = used / 4 + entries + kLeastRoom;
+    if (used + used / 8 > arena_end_) {
+        arena_.resize(arena_end_ + more);
+        return;
+    }
+    std::vector<std::uint32_t> packed(used + more);
+    std::uint32_t end = 0;
+    for (Vertex& v : vertices_) {
+        std::copy_n(arena_.begin() + v.star_begin, v.star_size, packed.begin() + end);
+        v.star_begin = end;
+        end += v.star_size;
+    }
+    arena_ = std::move(packed);
+    arena_end_ = end;
+}
+
+void StarMesh::vanish(std::span<const std::uint32_t> vertices) {
     for (const std::uint32_t v : vertices) {
         vertices_[v].kind = VertexKind::kDead;
         vertices_[v].star_size = 0;
     }
-    live_vertices_ -= static_cast<std::uint32_t>(vertices.size());
-    live_triangles_ -= static_cast<std::uint32_t>(triangles.size());
 }
 
 void neighbours_of(const StarMesh& mesh, std::uint32_t v, std::vector<Neighbour>& out) {
     out.clear();
     const auto star = mesh.star(v);
-    const auto corner_of = [&](const Triangle& c) { return c[0] == v ? 0 : c[1] == v ? 1 : 2; };
+    // A triangle's part of the edges to its second and third corner, seen from v.
+    const auto of_triangle = [&](std::uint32_t t, Neighbour(&two)[2]) {
+        const Triangle& c = mesh.triangle(t);
+        const std::size_t k = c[0] == v ? 0 : c[1] == v ? 1 : 2;
+        const std::size_t next = k == 2 ? 0 : k + 1, last = k == 0 ? 2 : k - 1;
+        two[0] = {c[next], 1, 0};
+        two[1] = {c[last], 0, 1};
+        if (!mesh.has_wedges()) return;
+        const Triangle& wedges = mesh.corners(t);
+        for (Neighbour& n : two) {
+            n.here = wedges[k];
+            n.there = wedges[&n == &two[0] ? next : last];
+            n.group = mesh.group(t);
+        }
+    };
+    const auto join = [](Neighbour& to, const Neighbour& from) {
+        to.seam |= from.seam || from.here != to.here || from.there != to.there || from.group != to.group;
+        to.out += from.out;
+        to.in += from.in;
+    };
+    Neighbour two[2];
     if (star.size() > kLargeStar) {
         // Hubs of thousands of triangles exist (the poles of a sphere): sort instead of searching.
         for (const std::uint32_t t : star) {
-            const Triangle& c = mesh.triangle(t);
-            const int k = corner_of(c);
-            out.push_back({c[(k + 1) % 3], 1, 0});
-            out.push_back({c[(k + 2) % 3], 0, 1});
+            of_triangle(t, two);
+            out.insert(out.end(), two, two + 2);
         }
-        std::sort(out.begin(), out.end(),
-                  [](const Neighbour& a, const Neighbour& b) { return a.vertex < b.vertex; });
+        std::stable_sort(out.begin(), out.end(),
+                         [](const Neighbour& a, const Neighbour& b) { return a.vertex < b.vertex; });
         std::size_t n = 0;
         for (std::size_t i = 1; i < out.size(); ++i) {
-            if (out[i].vertex == out[n].vertex) {
-                out[n].out += out[i].out;
-                out[n].in += out[i].in;
-            } else {
+            if (out[i].vertex == out[n].vertex)
+                join(out[n], out[i]);
+            else
                 out[++n] = out[i];
-            }
         }
         out.resize(n + 1);
         return;
     }
-    const auto entry = [&](std::uint32_t w) -> Neighbour& {
-        for (Neighbour& n : out)
-            if (n.vertex == w) return n;
-        return out.emplace_back(Neighbour{w});
-    };
     for (const std::uint32_t t : star) {
-        const Triangle& c = mesh.triangle(t);
-        const int k = corner_of(c);
-        ++entry(c[(k + 1) % 3]).out;
-        ++entry(c[(k + 2) % 3]).in;
+        of_triangle(t, two);
+        for (const Neighbour& part : two) {
+            const auto same = std::find_if(out.begin(), out.end(),
+                                           [&](const Neighbour& n) { return n.vertex == part.vertex; });
+            if (same == out.end())
+                out.push_back(part);
+            else
+                join(*same, part);
+        }
     }
 }
 

@@ -4,6 +4,7 @@
 // The mesh that is being collapsed: flat triangles, and for every vertex the list of its triangles.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -11,8 +12,17 @@
 #include "vec.hpp"
 #include "vertex.hpp"
 #include "vsplit/mesh.hpp"
+#include "vsplit/progressive_mesh.hpp"
 
 namespace vsplit::bake {
+
+/// Stars above this size are searched by sorting, and not fetched ahead.
+inline constexpr std::size_t kLargeStar = 64;
+
+/// A wedge (a vertex of a mesh with attributes) that goes, and the one that it becomes.
+struct WedgePair {
+    std::uint32_t child, parent;
+};
 
 /// Asks for a cache line. The empty assembly keeps g++ 12 from taking functions that only do this for ones
 /// without effect, whose calls it drops.
@@ -27,6 +37,9 @@ inline void fetch_ahead(const void* line) {
 class StarMesh {
   public:
     explicit StarMesh(const Mesh& mesh);
+    /// A mesh of points, with the wedges at its corners: edges where they or the groups differ are seams.
+    StarMesh(const Mesh& mesh, const std::vector<Triangle>& corners,
+             const std::vector<std::uint32_t>& groups);
 
     std::uint32_t vertex_count() const { return static_cast<std::uint32_t>(vertices_.size()); }
     std::uint32_t triangle_count() const { return static_cast<std::uint32_t>(triangles_.size()); }
@@ -61,6 +74,12 @@ class StarMesh {
 
     /// A removed triangle keeps the corners that it had when it went.
     const Triangle& triangle(std::uint32_t t) const { return triangles_[t]; }
+    bool has_wedges() const { return !corners_.empty(); }
+    /// The wedges at a triangle's corners, in the input's numbers; a removed one keeps those it had.
+    const Triangle& corners(std::uint32_t t) const { return corners_[t]; }
+    /// 0 without groups.
+    std::uint32_t group(std::uint32_t t) const { return groups_.empty() ? 0 : groups_[t]; }
+    bool has_groups() const { return !groups_.empty(); }
     std::span<const std::uint32_t> star(std::uint32_t v) const {
         return {arena_.data() + vertices_[v].star_begin, vertices_[v].star_size};
     }
@@ -71,8 +90,10 @@ class StarMesh {
 
     /// Fetches ahead: the vertex; then the list of its star; then its triangles.
     void prefetch_vertex(std::uint32_t v) const { fetch_ahead(&vertices_[v]); }
+    void prefetch_triangle(std::uint32_t t) const { fetch_ahead(&triangles_[t]); }
     void prefetch_star(std::uint32_t v) const { fetch_ahead(arena_.data() + vertices_[v].star_begin); }
     void prefetch_triangles(std::uint32_t v) const {
+        if (vertices_[v].star_size > kLargeStar) return;
         for (const std::uint32_t t : star(v)) fetch_ahead(&triangles_[t]);
     }
     /// Twice the area vector of a triangle.
@@ -83,10 +104,28 @@ class StarMesh {
 
     /// Folds `child` into `parent`: triangles with both go, the child's others get the parent as corner
     /// (appended to `corners_changed` as 3 * triangle + corner), removed ones are appended to `removed`.
-    void fold(std::uint32_t child, std::uint32_t parent, std::vector<std::uint32_t>& corners_changed,
-              std::vector<std::uint32_t>& removed);
-    /// Takes out a whole component: its triangles and vertices.
-    void vanish(std::span<const std::uint32_t> vertices, std::span<const std::uint32_t> triangles);
+    /// May run at once for edges whose stars share no vertex, if there is room() for all of them. Returns how
+    /// many entries of the arena it took. live_triangles() and live_vertices() stay as they were until
+    /// lose().
+    /// Wedges of the child's other triangles become what `pairs` says.
+    std::size_t fold(std::uint32_t child, std::uint32_t parent, std::span<const WedgePair> pairs,
+                     std::vector<std::uint32_t>& corners_changed, std::vector<std::uint32_t>& removed);
+    void lose(std::uint32_t vertices, std::uint32_t triangles) {
+        live_vertices_ -= vertices;
+        live_triangles_ -= triangles;
+    }
+    /// Makes room for `entries` more in the arena of stars: packs it if much of it is left over, else lets
+    /// it grow. A fold takes at most one for each triangle around its edge.
+    void make_room(std::size_t entries) {
+        if (arena_end_ + entries > arena_.size()) grow_room(entries);
+    }
+    /// Frees the lists of triangles, which are empty from then on.
+    void drop_stars() {
+        std::vector<std::uint32_t>().swap(arena_);
+        for (Vertex& v : vertices_) v.star_size = 0;
+    }
+    /// Takes out the vertices of a whole component; its triangles are left as they are.
+    void vanish(std::span<const std::uint32_t> vertices);
 
     /// Index in the input of each vertex.
     const std::vector<std::uint32_t>& input_vertices() const { return input_vertices_; }
@@ -96,7 +135,12 @@ class StarMesh {
 
     std::vector<Vertex> vertices_;
     std::vector<Triangle> triangles_;
-    std::vector<std::uint32_t> arena_;
+    std::vector<Triangle> corners_;      // empty without wedges
+    std::vector<std::uint32_t> groups_;  // empty, or one per triangle
+    void grow_room(std::size_t entries);
+
+    std::vector<std::uint32_t> arena_;  // used up to arena_end_
+    std::uint32_t arena_end_ = 0;
     std::vector<std::uint32_t> input_vertices_;
     Double3 centre_;
     double scale_ = 1;
@@ -107,11 +151,11 @@ class StarMesh {
 struct Neighbour {
     std::uint32_t vertex;
     std::uint32_t out = 0, in = 0;  ///< Triangles with the edge centre->vertex, vertex->centre.
-    bool special() const { return out != 1 || in != 1; }
+    std::uint32_t here = 0, there = 0,
+                  group = 0;  ///< Wedges and group of the first of them, if there are any.
+    bool seam = false;        ///< Others have other ones.
+    bool special() const { return seam || out != 1 || in != 1; }
 };
-
-/// Stars above this size are searched by sorting.
-inline constexpr std::size_t kLargeStar = 64;
 
 /// Collects the neighbours of `v` into `out`: in order of first appearance, or by number if the star is
 /// larger than kLargeStar.

@@ -28,6 +28,19 @@ enum class Placement : std::uint8_t {
     kEndpoint,  ///< On the better of the two ends: every position is one of the input's.
 };
 
+/// What a difference of attributes counts against a distance. A difference between what a removed vertex had
+/// and what the triangles that remain have there costs as much as if the surface were this much away from it.
+struct AttributeWeights {
+    double texcoord = 0.5;  ///< Times how far the texture slides on the surface.
+    double morph = 0.5;     ///< Times how far a morph target's vertex is moved elsewhere.
+    // The others times the size of the triangles around, and:
+    double normal = 0.1;   ///< the difference of unit vectors;
+    double tangent = 0.0;  ///< the same;
+    double color = 0.1;    ///< the difference of colours;
+    double joints = 0.3;   ///< the difference of the joints' weights;
+    double other = 0.1;    ///< the difference over the attribute's range.
+};
+
 struct CollapseOptions {
     Cost cost = Cost::kQuadric;
     Placement placement = Placement::kOptimal;
@@ -44,9 +57,13 @@ struct CollapseOptions {
     /// Pull toward the edge's middle, relative to the quadric's trace: what decides where the quadric does
     /// not.
     double regularisation = 1e-8;
-    /// A collapse waits until its cost reaches this times the fourth power of the deviation it makes (times
-    /// the root of the area of its triangles); 0 turns it off. Larger trades the mean error for the maximum.
-    double deviation_limit = 5;
+    /// A collapse waits until its cost reaches this times the third power of the deviation it makes, times
+    /// the mean area around an edge; 0 turns it off. Larger trades the mean error for the maximum.
+    double deviation_limit = 0.5;
+    AttributeWeights attribute_weights;
+    /// Vertices of different parts never share a point, even if their positions are the same: empty, or one
+    /// number per vertex. Only meshes with attributes or groups are asked for shared points at all.
+    std::vector<std::uint32_t> part_of{};
     /// Guard: a triangle's normal may turn by at most the angle of this cosine in one collapse.
     double min_normal_cosine = 0.4;
     /// Guard: least quality 4 sqrt(3) area / (sum of squared edges) of a changed triangle, unless it was
@@ -60,9 +77,10 @@ struct CollapseOptions {
 /// What happened, for people and --json.
 struct CollapseReport {
     std::uint64_t collapses = 0;
-    std::uint64_t components = 0;           ///< Of the input.
-    std::uint64_t unused_vertices = 0;      ///< That no triangle uses: left out of the record.
-    std::uint64_t components_vanished = 0;  ///< Left out of the base mesh; one split brings each back.
+    std::uint64_t components = 0;            ///< Of the input.
+    std::uint64_t unused_vertices = 0;       ///< That no triangle uses: left out of the record.
+    std::uint64_t degenerate_triangles = 0;  ///< With two corners at one point: left out of the record.
+    std::uint64_t components_vanished = 0;   ///< Left out of the base mesh; one split brings each back.
     std::uint64_t fixed_vertices =
         0;  ///< Non-manifold corners, locked, or of infinite weight: never removed.
     std::string
@@ -76,11 +94,15 @@ struct CollapseResult {
     CollapseReport report;
 };
 
+/// Of a mesh with attributes or groups, vertices at the same position are one point that collapses as a
+/// whole; where attributes or groups differ across an edge, there is a seam, which collapses along itself
+/// only. Attributes of the vertex that remains lie between those of both ends.
+///
 /// Collapses edges by ascending cost until none is left that keeps the topology, recording each. `mesh` must
 /// be sound (mesh_fault() null): anything else is kArgument. Weights of the mesh (painted; 1 if none)
 /// multiply the cost of their vertices, average on a collapse, and a vertex of infinite weight never moves
 /// nor goes. Vertices that no triangle uses are left out and counted. The result is the same for any number
-/// of threads. Works on up to 2^30 triangles; memory about 150 bytes a triangle.
+/// of threads. Works on up to 2^30 triangles; memory about 180 bytes a triangle.
 Result<CollapseResult> collapse(const Mesh& mesh, const CollapseOptions& options = {},
                                 const Progress& progress = {});
 

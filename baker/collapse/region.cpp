@@ -1,0 +1,387 @@
+// SPDX-FileCopyrightText: 2026 The vsplit authors
+// SPDX-License-Identifier: MIT
+#include "region.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace vsplit::bake {
+namespace {
+
+std::uint32_t nearer_end(const EdgeStar& star, Double3 place) {
+    return length2(place - star.pv) < length2(place - star.pu) ? star.v : star.u;
+}
+
+/// Visits each neighbour of `v`; those that two triangles name come once where the fan is closed and
+/// consistently oriented.
+template <class Visit>
+void visit_neighbours(const StarMesh& mesh, std::uint32_t v, std::vector<Neighbour>& scratch,
+                      const Visit& visit) {
+    if (mesh.kind(v) == VertexKind::kInner) {
+        for (const std::uint32_t t : mesh.star(v)) {
+            const Triangle& c = mesh.triangle(t);
+            visit(c[0] == v ? c[1] : c[1] == v ? c[2] : c[0]);
+        }
+        return;
+    }
+    neighbours_of(mesh, v, scratch);
+    for (const Neighbour& n : scratch) visit(n.vertex);
+}
+
+}  // namespace
+
+void Region::open(std::uint32_t low, std::uint32_t high, Bucket begin, Bucket end, std::size_t room) {
+    room_ = room;
+    low_ = low;
+    high_ = high;
+    begin_ = begin;
+    end_ = end;
+    guards_.open(low, high);
+    queue_.open(begin, end);
+    record_ = Record(!state_.weights.empty());
+    wedge_record_ = {};
+    put_off_.clear();
+    ends_.clear();
+    lost_vertices_ = lost_triangles_ = 0;
+    losing_ = kNoVertex;
+    losing_triangles_ = 0;
+    vanished_ = 0;
+}
+
+Target Region::best_of(std::uint32_t u) {
+    list_edges(u, listed_);
+    Target best;
+    for (std::size_t i = 0; i < listed_.others.size(); ++i) best.offer(listed_.others[i], listed_.costs[i]);
+    return best;
+}
+
+bool Region::star_inside(std::uint32_t v) const {
+    for (const std::uint32_t t : mesh_.star(v))
+        for (const std::uint32_t w : mesh_.triangle(t))
+            if (!inside(w)) return false;
+    return true;
+}
+
+void Region::put_off(std::uint32_t u, Bucket bucket) {
+    state_.slots[u] = bucket;
+    put_off_.push_back(u);
+}
+
+void Region::lose_of(std::uint32_t component, std::uint32_t triangles) {
+    lost_triangles_ += triangles;
+    if (component != losing_) {
+        flush();
+        losing_ = component;
+    }
+    losing_triangles_ += triangles;
+}
+
+void Region::flush() {
+    if (losing_triangles_ != 0) state_.components.lose(losing_, losing_triangles_);
+    losing_triangles_ = 0;
+}
+
+Candidate Region::evaluate(std::uint32_t u, std::uint32_t v, Fold fold) const {
+    if (state_.paper) {
+        thread_local EdgeStar star;
+        star.gather(mesh_, u, v);
+        return state_.paper->evaluate(mesh_, star, fold, state_.options.placement,
+                                      double(mesh_.vertex(u).weight), double(mesh_.vertex(v).weight));
+    }
+    const auto placed = [&](const EdgeQuadric<double>& edge) {
+        return fold == Fold::kIntoFirst                          ? edge.end(-1)
+               : fold == Fold::kIntoSecond                       ? edge.end(1)
+               : state_.options.placement == Placement::kOptimal ? edge.best()
+                                                                 : edge.better_end();
+    };
+    const EdgeQuadric<double> edge(shape_of(mesh_, u), shape_of(mesh_, v), state_.options);
+    const auto at = placed(edge);
+    if (at.cost >= edge.noise()) return {edge.middle() + at.place, edge.price(at.cost)};
+    // Nearly flat: only the triangles themselves tell how nearly.
+    thread_local std::vector<Neighbour> scratch;
+    const double boundary = state_.options.boundary_weight;
+    const EdgeQuadric<double> exact(exact_shape(mesh_, u, boundary, scratch),
+                                    exact_shape(mesh_, v, boundary, scratch), state_.options);
+    const auto exact_at = placed(exact);
+    return {exact.middle() + exact_at.place, exact.price(exact_at.cost)};
+}
+
+void Region::price(std::uint32_t u, EdgeList& list) const {
+    list.costs.resize(list.others.size());
+    const bool optimal = !state_.paper && state_.options.placement == Placement::kOptimal;
+    const bool some =
+        std::any_of(list.folds.begin(), list.folds.end(), [](Fold fold) { return fold == Fold::kAnywhere; });
+    if (optimal && some) price_edges(mesh_, u, list.others, state_.options, list.costs.data());
+    for (std::size_t i = 0; i < list.others.size(); ++i) {
+        if (list.folds[i] == Fold::kNever)
+            list.costs[i] = kNeverCost;
+        else if (!optimal || list.folds[i] != Fold::kAnywhere || list.costs[i] == kUnsurePrice)
+            list.costs[i] = float(evaluate(u, list.others[i], list.folds[i]).cost);
+    }
+}
+
+Fold Region::fold_of(std::uint32_t u, std::uint32_t v) const {
+    // A hub's edges would break the limit; pricing them at each collapse near it would be quadratic.
+    const bool hub = std::max(mesh_.star(u).size(), mesh_.star(v).size()) > state_.strictness.max_valence;
+    return hub ? Fold::kNever : fold_rule(mesh_, u, v);
+}
+
+void Region::list_edges(std::uint32_t u, EdgeList& list) const {
+    list.clear();
+    if (mesh_.star(u).size() <= state_.strictness.max_valence)
+        visit_neighbours(mesh_, u, list.scratch, [&](std::uint32_t v) {
+            if (!owns(u, v)) return;
+            if (const Fold fold = fold_of(u, v); fold != Fold::kNever) list.add(v, fold);
+        });
+    price(u, list);
+}
+
+Region::Outcome Region::attempt(std::uint32_t u, const Option& option, Bucket bucket, float& cost) {
+    cost = kNeverCost;
+    if (!is_whole() && !star_inside(option.other)) return Outcome::kElsewhere;
+    star_.gather(mesh_, u, option.other);
+    if (!guards_.keeps_topology(star_)) return Outcome::kWaits;
+    // What will be stored decides: the guards look at the rounded place.
+    const Float3 rounded = option.fold == Fold::kIntoFirst    ? mesh_.raw_position(u)
+                           : option.fold == Fold::kIntoSecond ? mesh_.raw_position(option.other)
+                           : state_.options.placement == Placement::kEndpoint
+                               ? mesh_.raw_position(nearer_end(star_, option.candidate.place))
+                               : mesh_.round(option.candidate.place);
+    const Double3 place = mesh_.work(rounded);
+    star_.place_at(place);
+    if (!guards_.keeps_shape(star_, place, state_.histories, state_.strictness)) return Outcome::kWaits;
+    const Deviation deviation = deviation_of(star_, place, state_.histories);
+    const double d = deviation.largest;
+    const double weight = 0.5 * (double(mesh_.vertex(u).weight) + double(mesh_.vertex(option.other).weight));
+    // The same dimension as the cost, so that one factor serves every level: area times distance^3.
+    const double limit =
+        state_.paper ? 0 : state_.options.deviation_limit * d * d * d * state_.mean_star * weight;
+    cost = float(std::max(option.candidate.cost, limit));
+    if (mesh_.has_wedges()) {
+        const std::uint32_t parent = parent_of(star_, option);
+        cost = kNeverCost;
+        if (!wedge_star_.gather(mesh_, star_, parent != u, parent == u)) return Outcome::kWaits;
+        cost = float(std::max(option.candidate.cost, limit) +
+                     weight * attribute_cost(mesh_, star_, wedge_star_, *state_.wedges, place));
+    }
+    if (bucket_of(cost) > bucket) return Outcome::kWaits;
+    if (!is_whole()) {
+        if (star_.size > room_) return Outcome::kElsewhere;
+        // What is not inner is shaped anew, and its neighbours are read for it.
+        for (std::size_t i = 0; i < star_.size; ++i)
+            for (const std::uint32_t w : {star_.a[i], star_.b[i]})
+                if (mesh_.kind(w) != VertexKind::kInner && !star_inside(w)) return Outcome::kElsewhere;
+    } else {
+        mesh_.make_room(star_.size);
+    }
+    apply(star_, option, rounded, deviation);
+    return Outcome::kDone;
+}
+
+std::uint32_t Region::parent_of(const EdgeStar& star, const Option& option) const {
+    if (option.fold == Fold::kIntoFirst) return star.u;
+    if (option.fold == Fold::kIntoSecond) return star.v;
+    // A curve's vertex stays; else the one with the larger star, since the other's corners change.
+    if (mesh_.kind(star.u) != mesh_.kind(star.v))
+        return mesh_.kind(star.v) == VertexKind::kCurve ? star.v : star.u;
+    return mesh_.star(star.v).size() > mesh_.star(star.u).size() ? star.v : star.u;
+}
+
+void Region::fold_wedges(const EdgeStar& star, std::uint32_t parent, Double3 place) {
+    const bool swapped = parent == star.u;  // pairs go from the first end to the second
+    wedge_record_.add(wedge_star_.pairs, swapped, wedge_star_.moved[swapped ? 0 : 1], *state_.wedges);
+    // All are mixed from what was there before any changes.
+    const std::size_t stride = state_.wedges->stride();
+    thread_local std::vector<float> mixed;
+    mixed.resize(stride * wedge_star_.pairs.size());
+    for (std::size_t i = 0; i < wedge_star_.pairs.size(); ++i)
+        mix_at(mesh_, star, wedge_star_.pairs[i], *state_.wedges, place,
+               std::span(mixed).subspan(stride * i, stride));
+    for (std::size_t i = 0; i < wedge_star_.pairs.size(); ++i) {
+        WedgePair& pair = wedge_star_.pairs[i];
+        if (swapped) std::swap(pair.child, pair.parent);
+        const auto from = std::span(mixed).subspan(stride * i, stride);
+        std::copy(from.begin(), from.end(), state_.wedges->of(pair.parent).begin());
+    }
+}
+
+void Region::apply(const EdgeStar& star, const Option& option, Float3 place, const Deviation& deviation) {
+    const std::uint32_t parent = parent_of(star, option), child = star.u + star.v - parent;
+    if (mesh_.has_wedges()) fold_wedges(star, parent, mesh_.work(place));
+    const TrianglePart<double> part = update_ring(mesh_, star);
+    const std::size_t before = record_.removed.size();
+    const Float3 parent_position = mesh_.raw_position(parent);
+    const float parent_weight = state_.weights.empty() ? 1 : state_.weights[parent];
+    const std::span<const WedgePair> pairs =
+        mesh_.has_wedges() ? wedge_star_.pairs : std::span<const WedgePair>{};
+    const std::size_t taken = mesh_.fold(child, parent, pairs, record_.corners_changed, record_.removed);
+    room_ -= std::min(room_, taken);
+    record_.add(child, parent, parent_position, parent_weight, float(deviation.largest));
+    ++lost_vertices_;
+    lose_of(state_.components.of(parent), std::uint32_t(record_.removed.size() - before));
+    mesh_.set_raw_position(parent, place);
+
+    VertexHistory& history = state_.histories[parent];
+    for (std::size_t i = 0; i < 3; ++i) history.normal[i] += state_.histories[child].normal[i];
+    history.deviation = deviation.at_place;
+    history.witness = deviation.witness;
+    Vertex& shape = mesh_.vertex(parent);
+    shape.folded |= mesh_.vertex(child).folded;
+    shape.weight = 0.5f * (shape.weight + mesh_.vertex(child).weight);
+    if (!state_.weights.empty())
+        state_.weights[parent] = 0.5f * (state_.weights[parent] + state_.weights[child]);
+    if (state_.paper) state_.paper->merge(parent, child);
+    if (mesh_.kind(parent) == VertexKind::kInner)
+        set_part(shape, part);
+    else
+        rebuild_shape(mesh_, parent, state_.options.boundary_weight, ring_);
+
+    ring_edges_.clear();
+    visit_neighbours(mesh_, parent, ring_, [&](std::uint32_t w) { ring_edges_.add(w, Fold::kNever); });
+    for (const std::uint32_t w : ring_edges_.others)
+        if (mesh_.kind(w) != VertexKind::kInner && mesh_.star(w).size() <= kHub)
+            rebuild_shape(mesh_, w, state_.options.boundary_weight, ring_);
+    queue_.remove(child);
+    reprice(parent, child, bucket_of(float(option.candidate.cost)));
+}
+
+void Region::reprice(std::uint32_t parent, std::uint32_t child, Bucket now) {
+    for (std::size_t i = 0; i < ring_edges_.others.size(); ++i)
+        ring_edges_.folds[i] = fold_of(parent, ring_edges_.others[i]);
+    price(parent, ring_edges_);
+    Target best;
+    for (std::size_t i = 0; i < ring_edges_.others.size(); ++i) {
+        const std::uint32_t w = ring_edges_.others[i];
+        const float cost = ring_edges_.costs[i];
+        Target& other = state_.targets[w];
+        if (owns(parent, w)) best.offer(w, cost);
+        if (!queue_.contains(w)) {
+            // What stopped it may be gone.
+            other.vertex = kNoVertex;
+            queue_.push(w, now);
+            continue;
+        }
+        const bool gone = other.vertex == parent || other.vertex == child;
+        if (gone) other = {kNoVertex, other.runner_up, other.runner_up};
+        if (owns(w, parent)) other.offer(parent, cost);
+        if (gone || other.vertex == parent)
+            queue_.push(w, other.cost < kNeverCost ? bucket_of(other.cost) : now);
+    }
+    state_.targets[parent] = best;
+    if (best.vertex != kNoVertex)
+        queue_.push(parent, bucket_of(best.cost));
+    else
+        queue_.remove(parent);
+}
+
+void Region::prefetch() const {
+    // A pipeline over the items to come: each step needs what the one before has fetched.
+    const std::uint32_t vertices = mesh_.vertex_count();
+    const auto later = [&](std::size_t ahead, const auto& of_vertex, const auto& of_target) {
+        const std::uint32_t v = queue_.peek(ahead);
+        if (v >= vertices) return;
+        of_vertex(v);
+        if (const std::uint32_t target = state_.targets[v].vertex; inside(target)) of_target(target);
+    };
+    const auto nothing = [](std::uint32_t) {};
+    const auto neighbours = [&](std::uint32_t v) {
+        fetch_ahead(&state_.histories[v]);
+        if (mesh_.star(v).size() > kLargeStar) return;
+        for (const std::uint32_t t : mesh_.star(v)) {
+            // Of a closed fan, the next corner of every triangle is every neighbour.
+            const Triangle& c = mesh_.triangle(t);
+            const std::uint32_t w = c[0] == v ? c[1] : c[1] == v ? c[2] : c[0];
+            mesh_.prefetch_vertex(w);
+            fetch_ahead(&state_.histories[w]);
+            fetch_ahead(&state_.targets[w]);
+        }
+    };
+    if (const std::uint32_t v = queue_.peek(20); v < vertices) {
+        mesh_.prefetch_vertex(v);
+        fetch_ahead(&state_.targets[v]);
+    }
+    later(
+        15, [&](std::uint32_t v) { mesh_.prefetch_star(v); },
+        [&](std::uint32_t v) { mesh_.prefetch_vertex(v); });
+    later(
+        10, [&](std::uint32_t v) { mesh_.prefetch_triangles(v); },
+        [&](std::uint32_t v) { mesh_.prefetch_star(v); });
+    later(6, neighbours, [&](std::uint32_t v) { mesh_.prefetch_triangles(v); });
+    later(3, nothing, neighbours);
+}
+
+void Region::process(std::uint32_t u, Bucket bucket) {
+    if (mesh_.kind(u) == VertexKind::kDead) return;
+    if (!is_whole() && !star_inside(u)) return put_off(u, bucket);
+    // Most often the target is still the best; its price is that of today.
+    std::uint32_t tried = kNoVertex;
+    float tried_cost = kNeverCost;
+    Target& target = state_.targets[u];
+    if (target.vertex != kNoVertex && mesh_.kind(target.vertex) != VertexKind::kDead) {
+        if (const Fold fold = fold_of(u, target.vertex); fold != Fold::kNever) {
+            const Option option{target.vertex, fold, evaluate(u, target.vertex, fold)};
+            const float cost = float(option.candidate.cost);
+            if (bucket_of(cost) <= bucket) {
+                tried = option.other;
+                const Outcome outcome = attempt(u, option, bucket, tried_cost);
+                if (outcome == Outcome::kDone) return;
+                if (outcome == Outcome::kElsewhere) return put_off(u, bucket);
+            } else if (cost <= target.runner_up) {
+                target.cost = cost;
+                queue_.push(u, bucket_of(cost));
+                return;
+            }
+        }
+    }
+    list_edges(u, listed_);
+    Target wait;
+    for (;;) {
+        Target next;
+        for (std::size_t i = 0; i < listed_.others.size(); ++i)
+            next.offer(std::uint32_t(i), listed_.costs[i]);
+        if (next.vertex == kNoVertex || bucket_of(next.cost) > bucket) break;
+        const std::uint32_t at = next.vertex, v = listed_.others[at];
+        const Fold fold = listed_.folds[at];
+        float cost = tried_cost;
+        if (v != tried) {
+            const Outcome outcome = attempt(u, {v, fold, evaluate(u, v, fold)}, bucket, cost);
+            if (outcome == Outcome::kDone) return;
+            if (outcome == Outcome::kElsewhere) return put_off(u, bucket);
+        }
+        wait.offer(v, cost);
+        listed_.costs[at] = kNeverCost;  // not again
+    }
+    for (std::size_t i = 0; i < listed_.others.size(); ++i) wait.offer(listed_.others[i], listed_.costs[i]);
+    target = wait;
+    if (wait.vertex != kNoVertex) queue_.push(u, bucket_of(wait.cost));
+}
+
+void Region::process_component(std::uint32_t component, Bucket bucket) {
+    if (!state_.components.may_vanish(component)) return;
+    flush();
+    if (state_.components.live_triangles(component) > Components::kMaxVanishing) {
+        // Not small enough yet; again when all costs have doubled.
+        if (bucket + kBucketsPerOctave < bucket_of(kNeverCost))
+            queue_.push(mesh_.vertex_count() + component, Bucket(bucket + kBucketsPerOctave));
+        return;
+    }
+    const auto vertices = state_.components.live_vertices(mesh_, component);
+    std::vector<std::uint32_t> triangles;
+    for (const std::uint32_t v : vertices) {
+        const auto star = mesh_.star(v);
+        triangles.insert(triangles.end(), star.begin(), star.end());
+        queue_.remove(v);
+    }
+    std::sort(triangles.begin(), triangles.end());
+    triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
+    mesh_.vanish(vertices);
+    record_.removed.insert(record_.removed.end(), triangles.begin(), triangles.end());
+    lost_vertices_ += std::uint32_t(vertices.size());
+    lost_triangles_ += std::uint32_t(triangles.size());
+    record_.add_vanished(vertices, float(state_.components.reach(component)));
+    if (mesh_.has_wedges()) wedge_record_.add_vanished();
+    state_.components.vanish(component);
+    ++vanished_;
+}
+
+}  // namespace vsplit::bake

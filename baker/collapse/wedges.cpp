@@ -1,0 +1,389 @@
+// SPDX-FileCopyrightText: 2026 The vsplit authors
+// SPDX-License-Identifier: MIT
+#include "wedges.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <tuple>
+
+namespace vsplit::bake {
+namespace {
+
+Double3 to_double(const Float3& p) {
+    return {double(p.x), double(p.y), double(p.z)};
+}
+
+/// World length of a unit of texture: the root of the ratio of the areas.
+double texture_length(const Mesh& mesh, const Attribute& attribute) {
+    double area = 0, texture_area = 0;
+    for (const Triangle& t : mesh.triangles) {
+        const Double3 a = to_double(mesh.positions[t[0]]);
+        area += length(cross(to_double(mesh.positions[t[1]]) - a, to_double(mesh.positions[t[2]]) - a));
+        const float* uv[3];
+        for (std::size_t k = 0; k < 3; ++k) uv[k] = &attribute.values[2 * std::size_t{t[k]}];
+        texture_area +=
+            std::abs((double(uv[1][0]) - double(uv[0][0])) * (double(uv[2][1]) - double(uv[0][1])) -
+                     (double(uv[2][0]) - double(uv[0][0])) * (double(uv[1][1]) - double(uv[0][1])));
+    }
+    const double length = texture_area > 0 ? std::sqrt(area / texture_area) : 0;
+    return std::isfinite(length) ? length : 0;
+}
+
+/// The largest difference of any component.
+double range_of(const Attribute& attribute) {
+    double most = 0;
+    for (std::size_t k = 0; k < attribute.components; ++k) {
+        double low = std::numeric_limits<double>::infinity(), high = -low;
+        for (std::size_t i = k; i < attribute.values.size(); i += attribute.components) {
+            low = std::min(low, double(attribute.values[i]));
+            high = std::max(high, double(attribute.values[i]));
+        }
+        most = std::max(most, high - low);
+    }
+    return most;
+}
+
+void normalise(float* v) {
+    const double n =
+        std::sqrt(double(v[0]) * double(v[0]) + double(v[1]) * double(v[1]) + double(v[2]) * double(v[2]));
+    if (n > 0)
+        for (std::size_t i = 0; i < 3; ++i) v[i] = float(double(v[i]) / n);
+}
+
+}  // namespace
+
+WedgeValues::WedgeValues(const Mesh& mesh, const AttributeWeights& weights) {
+    for (const Attribute& attribute : mesh.attributes) {
+        double weight = 0;
+        switch (attribute.semantic) {
+            case Semantic::kNormal:
+                weight = weights.normal;
+                break;
+            case Semantic::kTangent:
+                weight = weights.tangent;
+                break;
+            case Semantic::kTexcoord:
+                weight = weights.texcoord * texture_length(mesh, attribute);
+                break;
+            case Semantic::kColor:
+                weight = weights.color;
+                break;
+            case Semantic::kJoints:
+                break;  // Told by their weights.
+            case Semantic::kJointWeights:
+                weight = weights.joints;
+                break;
+            case Semantic::kMorphOffset:
+                weight = weights.morph;
+                break;
+            case Semantic::kMorphNormal:
+            case Semantic::kMorphTangent:
+                weight = weights.normal;
+                break;
+            case Semantic::kOther: {
+                const double range = range_of(attribute);
+                weight = range > 0 ? weights.other / range : 0;
+                break;
+            }
+        }
+        columns_.push_back({attribute.semantic, stride_, attribute.components, weight});
+        stride_ += attribute.components;
+    }
+    values_.resize(std::size_t{stride_} * mesh.positions.size());
+    for (std::size_t i = 0; i < columns_.size(); ++i) {
+        const std::size_t components = columns_[i].components;
+        for (std::size_t v = 0; v < mesh.positions.size(); ++v)
+            std::copy_n(mesh.attributes[i].values.begin() + std::ptrdiff_t(components * v), components,
+                        values_.begin() + std::ptrdiff_t(stride_ * v + columns_[i].begin));
+    }
+}
+
+void WedgeValues::mix(const Blend& blend, std::span<float> out) const {
+    for (std::size_t k = 0; k < 3; ++k)
+        if (blend.shares[k] == 1) {
+            std::copy(blend.of[k].begin(), blend.of[k].end(), out.begin());
+            return;
+        }
+    for (const Column& column : columns_) {
+        if (column.semantic == Semantic::kJoints || column.semantic == Semantic::kJointWeights) continue;
+        bool alike = true;
+        for (std::size_t i = column.begin; i < column.begin + column.components; ++i) {
+            const float a = blend.of[0][i], b = blend.of[1][i], c = blend.of[2][i];
+            // What is equal stays so, bit by bit.
+            const bool same = a == b && b == c;
+            alike &= same;
+            out[i] = same ? a
+                          : float(blend.shares[0] * double(a) + blend.shares[1] * double(b) +
+                                  blend.shares[2] * double(c));
+        }
+        if (alike) continue;
+        if (column.semantic == Semantic::kNormal || column.semantic == Semantic::kTangent)
+            normalise(&out[column.begin]);
+        if (column.semantic == Semantic::kTangent) {
+            const auto most =
+                std::max_element(blend.shares.begin(), blend.shares.end()) - blend.shares.begin();
+            out[column.begin + 3] = blend.of[std::size_t(most)][column.begin + 3];
+        }
+    }
+    mix_joints(blend, out);
+}
+
+void WedgeValues::mix_joints(const Blend& blend, std::span<float> out) const {
+    // All sets together: the strongest joints stay, and their weights make one again.
+    struct Influence {
+        float joint;
+        double weight;
+    };
+    std::size_t slots = 0;
+    for (const Column& column : columns_) slots += column.semantic == Semantic::kJoints ? 4 : 0;
+    if (slots == 0) return;
+    std::vector<Influence> found;
+    for (std::size_t k = 0; k < 3; ++k)
+        for (std::size_t c = 0; c + 1 < columns_.size(); ++c) {
+            if (columns_[c].semantic != Semantic::kJoints) continue;
+            for (std::size_t i = 0; i < 4; ++i) {
+                const float joint = blend.of[k][columns_[c].begin + i];
+                const double weight = blend.shares[k] * double(blend.of[k][columns_[c + 1].begin + i]);
+                if (!(weight > 0)) continue;
+                const auto same = std::find_if(found.begin(), found.end(),
+                                               [&](const Influence& f) { return f.joint == joint; });
+                if (same == found.end())
+                    found.push_back({joint, weight});
+                else
+                    same->weight += weight;
+            }
+        }
+    std::stable_sort(found.begin(), found.end(),
+                     [](const Influence& x, const Influence& y) { return x.weight > y.weight; });
+    if (found.size() > slots) found.resize(slots);
+    double sum = 0;
+    for (const Influence& f : found) sum += f.weight;
+    std::size_t next = 0;
+    for (std::size_t c = 0; c + 1 < columns_.size(); ++c) {
+        if (columns_[c].semantic != Semantic::kJoints) continue;
+        for (std::size_t i = 0; i < 4; ++i, ++next) {
+            out[columns_[c].begin + i] = next < found.size() ? found[next].joint : 0.0f;
+            out[columns_[c + 1].begin + i] = next < found.size() ? float(found[next].weight / sum) : 0.0f;
+        }
+    }
+}
+
+double WedgeValues::apart2(std::span<const float> old, const Blend& blend, double extent,
+                           double scale) const {
+    double total = 0;
+    for (std::size_t c = 0; c < columns_.size(); ++c) {
+        const Column& column = columns_[c];
+        if (!(column.weight > 0)) continue;
+        double sum = 0;
+        for (std::size_t i = column.begin; i < column.begin + column.components; ++i) {
+            double there = 0;
+            for (std::size_t k = 0; k < 3; ++k) {
+                if (column.semantic != Semantic::kJointWeights) {
+                    there += blend.shares[k] * double(blend.of[k][i]);
+                    continue;
+                }
+                // By joint, in whatever order the corner names them.
+                const std::size_t joints = columns_[c - 1].begin;
+                for (std::size_t j = 0; j < 4; ++j)
+                    if (blend.of[k][joints + j] == old[joints + i - column.begin])
+                        there += blend.shares[k] * double(blend.of[k][column.begin + j]);
+            }
+            sum += (double(old[i]) - there) * (double(old[i]) - there);
+        }
+        const bool is_length =
+            column.semantic == Semantic::kTexcoord || column.semantic == Semantic::kMorphOffset;
+        const double unit = column.weight * (is_length ? scale : extent);
+        total += unit * unit * sum;
+    }
+    return total;
+}
+
+PointMesh points_of(const Mesh& mesh, std::span<const std::uint32_t> part_of) {
+    const auto key = [&](std::uint32_t v) {
+        // Adding 0 turns -0 into 0.
+        const Float3& p = mesh.positions[v];
+        return std::tuple(std::bit_cast<std::uint32_t>(p.x + 0.0f), std::bit_cast<std::uint32_t>(p.y + 0.0f),
+                          std::bit_cast<std::uint32_t>(p.z + 0.0f), part_of.empty() ? 0u : part_of[v]);
+    };
+    std::vector<std::uint32_t> order(mesh.positions.size());
+    std::iota(order.begin(), order.end(), 0u);
+    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+        const auto ka = key(a), kb = key(b);
+        return ka != kb ? ka < kb : a < b;
+    });
+    // Points are numbered by the first of their vertices.
+    std::vector<std::uint32_t> first(mesh.positions.size());
+    for (std::size_t i = 0; i < order.size(); ++i)
+        first[order[i]] = i > 0 && key(order[i]) == key(order[i - 1]) ? first[order[i - 1]] : order[i];
+    std::vector<std::uint32_t> point(mesh.positions.size());
+    PointMesh out;
+    for (std::uint32_t v = 0; v < mesh.positions.size(); ++v) {
+        if (first[v] == v) {
+            point[v] = std::uint32_t(out.mesh.positions.size());
+            out.mesh.positions.push_back(mesh.positions[v]);
+            if (!mesh.weights.empty()) out.mesh.weights.push_back(mesh.weights[v]);
+        } else {
+            point[v] = point[first[v]];
+            if (!mesh.weights.empty())
+                out.mesh.weights[point[v]] = std::max(out.mesh.weights[point[v]], mesh.weights[v]);
+        }
+    }
+    std::vector<bool> used(mesh.positions.size(), false);
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        const Triangle& c = mesh.triangles[t];
+        const Triangle p{point[c[0]], point[c[1]], point[c[2]]};
+        if (p[0] == p[1] || p[1] == p[2] || p[2] == p[0]) {
+            ++out.degenerate;
+            continue;
+        }
+        out.mesh.triangles.push_back(p);
+        out.corners.push_back(c);
+        if (!mesh.groups.empty()) out.groups.push_back(mesh.groups[t]);
+        for (const std::uint32_t v : c) used[v] = true;
+    }
+    out.unused = std::uint64_t(std::count(used.begin(), used.end(), false));
+    return out;
+}
+
+bool WedgeStar::gather(const StarMesh& mesh, const EdgeStar& star, bool first_goes, bool second_goes) {
+    pairs.clear();
+    const std::uint32_t ends[2] = {star.u, star.v};
+    for (std::size_t e = 0; e < 2; ++e) {
+        moved[e].clear();
+        for (const std::uint32_t t : mesh.star(ends[e])) {
+            const Triangle& c = mesh.triangle(t);
+            const std::size_t k = c[0] == ends[e] ? 0 : c[1] == ends[e] ? 1 : 2;
+            const std::uint32_t wedge = mesh.corners(t)[k];
+            if (std::find(moved[e].begin(), moved[e].end(), wedge) == moved[e].end())
+                moved[e].push_back(wedge);
+            if (e == 1) continue;
+            for (std::size_t j = 0; j < 3; ++j)
+                if (c[j] == star.v) {
+                    const WedgePair pair{wedge, mesh.corners(t)[j]};
+                    if (std::none_of(pairs.begin(), pairs.end(), [&](const WedgePair& p) {
+                            return p.child == pair.child && p.parent == pair.parent;
+                        }))
+                        pairs.push_back(pair);
+                }
+        }
+    }
+    // Each wedge that may go has exactly one partner.
+    const auto partners = [&](std::uint32_t wedge, auto member) {
+        return std::count_if(pairs.begin(), pairs.end(),
+                             [&](const WedgePair& p) { return p.*member == wedge; });
+    };
+    for (const std::uint32_t wedge : moved[0])
+        if (first_goes && partners(wedge, &WedgePair::child) != 1) return false;
+    for (const std::uint32_t wedge : moved[1])
+        if (second_goes && partners(wedge, &WedgePair::parent) != 1) return false;
+    // New values are mixed from the two ends': one partner each, both ways.
+    for (const WedgePair& pair : pairs)
+        if (partners(pair.child, &WedgePair::child) != 1 || partners(pair.parent, &WedgePair::parent) != 1)
+            return false;
+    return true;
+}
+
+namespace {
+
+/// The nearest point of triangles, as shares of its corners. Inside a triangle exact, beside it near enough.
+struct Nearest {
+    double distance2 = std::numeric_limits<double>::infinity();
+    std::array<double, 3> shares{1, 0, 0};
+    Triangle corners{};
+
+    void offer(Double3 p, Double3 a, Double3 b, Double3 c, const Triangle& triangle) {
+        const Double3 ab = b - a, ac = c - a, ap = p - a;
+        const double bb = length2(ab), bc = dot(ab, ac), cc = length2(ac), pb = dot(ap, ab), pc = dot(ap, ac),
+                     determinant = bb * cc - bc * bc;
+        double x = 0, y = 0;
+        if (determinant > 1e-12 * bb * cc) {
+            x = std::max(0.0, (cc * pb - bc * pc) / determinant);
+            y = std::max(0.0, (bb * pc - bc * pb) / determinant);
+            if (const double sum = x + y; sum > 1) {
+                x /= sum;
+                y = 1 - x;
+            }
+        }
+        const double d = length2(ap - ab * x - ac * y);
+        if (d >= distance2) return;
+        distance2 = d;
+        shares = {1 - x - y, x, y};
+        corners = triangle;
+    }
+};
+
+/// The wedges at a triangle's corners, from one of its vertices on.
+Triangle corners_from(const StarMesh& mesh, std::uint32_t t, std::uint32_t vertex) {
+    const Triangle &c = mesh.triangle(t), &wedges = mesh.corners(t);
+    const std::size_t k = c[0] == vertex ? 0 : c[1] == vertex ? 1 : 2;
+    return {wedges[k], wedges[(k + 1) % 3], wedges[(k + 2) % 3]};
+}
+
+}  // namespace
+
+void mix_at(const StarMesh& mesh, const EdgeStar& star, const WedgePair& pair, const WedgeValues& values,
+            Double3 place, std::span<float> out) {
+    const auto copy = [&](std::uint32_t wedge) {
+        const auto from = values.of(wedge);
+        std::copy(from.begin(), from.end(), out.begin());
+    };
+    const auto is_at = [&](Double3 p) { return p.x == place.x && p.y == place.y && p.z == place.z; };
+    if (is_at(star.pu)) return copy(pair.child);
+    if (is_at(star.pv)) return copy(pair.parent);
+    Nearest nearest;
+    for (std::size_t i = 0; i < star.size; ++i) {
+        const bool first = i < star.first_size;
+        const Triangle corners = corners_from(mesh, star.triangles[i], first ? star.u : star.v);
+        if (corners[0] != (first ? pair.child : pair.parent)) continue;
+        const EdgeStar::Wing wing = star.wing(i);
+        nearest.offer(place, first ? star.pu : star.pv, wing.pa, wing.pb, corners);
+    }
+    for (std::size_t i = 0; i < star.opposite.size(); ++i) {
+        const Triangle corners = corners_from(mesh, star.opposite_triangles[i], star.u);
+        if (corners[0] != pair.child) continue;
+        const bool forward = star.forward[i] != 0;
+        nearest.offer(place, star.pu, forward ? star.pv : star.opposite_places[i],
+                      forward ? star.opposite_places[i] : star.pv, corners);
+    }
+    values.mix({{values.of(nearest.corners[0]), values.of(nearest.corners[1]), values.of(nearest.corners[2])},
+                nearest.shares},
+               out);
+}
+
+double attribute_cost(const StarMesh& mesh, const EdgeStar& star, const WedgeStar& wedges,
+                      const WedgeValues& values, Double3 place) {
+    const double area = double(mesh.vertex(star.u).size) + double(mesh.vertex(star.v).size);
+    const double extent = std::sqrt(area / 6);
+    thread_local std::vector<float> mixed;
+    mixed.resize(values.stride());
+    double most = 0;
+    for (const WedgePair& pair : wedges.pairs) {
+        mix_at(mesh, star, pair, values, place, mixed);
+        for (const bool second : {false, true}) {
+            // The nearest point of the new triangles on this side of seams, and the values there.
+            const std::uint32_t own = second ? pair.parent : pair.child;
+            const Double3 p = second ? star.pv : star.pu;
+            Nearest nearest;
+            for (std::size_t i = 0; i < star.size; ++i) {
+                const Triangle corners =
+                    corners_from(mesh, star.triangles[i], i < star.first_size ? star.u : star.v);
+                if (corners[0] != pair.child && corners[0] != pair.parent) continue;
+                const EdgeStar::Wing wing = star.wing(i);
+                nearest.offer(p, place, wing.pa, wing.pb, corners);
+            }
+            if (std::isinf(nearest.distance2)) continue;  // This side of the seam goes.
+            most = std::max(
+                most, values.apart2(values.of(own),
+                                    {{mixed, values.of(nearest.corners[1]), values.of(nearest.corners[2])},
+                                     nearest.shares},
+                                    extent, mesh.scale()));
+        }
+    }
+    return std::pow(area, 1.5) / std::sqrt(6.0) * most;
+}
+
+}  // namespace vsplit::bake

@@ -1,0 +1,93 @@
+// SPDX-FileCopyrightText: 2026 The vsplit authors
+// SPDX-License-Identifier: MIT
+//
+// Meshes with attributes: points, which collapse, and the renderer's vertices that share a point (wedges, as
+// Hoppe 1996 calls the corners of equal attributes around a vertex).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "edge_star.hpp"
+#include "star_mesh.hpp"
+#include "vsplit/bake/collapse.hpp"
+#include "vsplit/mesh.hpp"
+
+namespace vsplit::bake {
+
+/// What the wedges carry: all attributes of one after each other.
+class WedgeValues {
+  public:
+    WedgeValues(const Mesh& mesh, const AttributeWeights& weights);
+
+    std::uint32_t stride() const { return stride_; }
+    std::span<float> of(std::uint32_t wedge) {
+        return {values_.data() + std::size_t{stride_} * wedge, stride_};
+    }
+    std::span<const float> of(std::uint32_t wedge) const {
+        return {values_.data() + std::size_t{stride_} * wedge, stride_};
+    }
+    /// Three values and their shares, which sum to 1.
+    struct Blend {
+        std::array<std::span<const float>, 3> of;
+        std::array<double, 3> shares;
+    };
+    /// Into `out`: unit vectors stay so; of joints, the strongest of all stay. A share of 1 copies the bits.
+    void mix(const Blend& blend, std::span<float> out) const;
+    /// How far `old` is from a blend, as a squared length: see AttributeWeights. `extent` is the size of the
+    /// triangles around, working units, of which one object unit makes `scale`.
+    double apart2(std::span<const float> old, const Blend& blend, double extent, double scale) const;
+
+    /// An attribute's begin within a wedge's values.
+    struct Column {
+        Semantic semantic;
+        std::uint32_t begin, components;
+        double weight;  ///< Times the difference: a length (texture coordinates, offsets), or a share of the
+                        ///< extent.
+    };
+    const std::vector<Column>& columns() const { return columns_; }
+
+  private:
+    void mix_joints(const Blend& blend, std::span<float> out) const;
+
+    std::vector<Column> columns_;
+    std::uint32_t stride_ = 0;
+    std::vector<float> values_;
+};
+
+/// A mesh of points, and the wedges at its corners.
+struct PointMesh {
+    Mesh mesh;                          ///< Positions and weights of points; triangles over them.
+    std::vector<Triangle> corners;      ///< Parallel to its triangles: the wedges, vertices of the input.
+    std::vector<std::uint32_t> groups;  ///< Parallel to its triangles; empty if the input has none.
+    std::uint64_t degenerate = 0;       ///< Triangles of the input with two corners at one point: left out.
+    std::uint64_t unused = 0;           ///< Vertices of the input that no triangle left uses.
+};
+
+/// Wedges with bitwise equal positions (0 and -0 being equal) and the same part share a point, whose weight
+/// is the largest of theirs. `part_of`: empty, or one per vertex.
+PointMesh points_of(const Mesh& mesh, std::span<const std::uint32_t> part_of);
+
+/// The wedges of an edge that is about to collapse.
+struct WedgeStar {
+    std::vector<WedgePair> pairs;  ///< Of the ends' wedges on the edge's triangles, first and second end.
+    std::vector<std::uint32_t> moved[2];  ///< All wedges of the first end, of the second.
+
+    /// False if the ends' wedges do not go together: one of the end that goes (of either, if any may) has no
+    /// partner, or two.
+    bool gather(const StarMesh& mesh, const EdgeStar& star, bool first_goes, bool second_goes);
+};
+
+/// The values that a pair's wedge has at `place` once it is all that is left of the two, into `out`: what the
+/// nearest of the old triangles on its side of seams has there.
+void mix_at(const StarMesh& mesh, const EdgeStar& star, const WedgePair& pair, const WedgeValues& values,
+            Double3 place, std::span<float> out);
+
+/// What the collapse does to attributes, as a cost: the triangles' area^1.5 around the edge times the squared
+/// length that WedgeValues::apart2 says, of both ends' old values against the new triangles'.
+double attribute_cost(const StarMesh& mesh, const EdgeStar& star, const WedgeStar& wedges,
+                      const WedgeValues& values, Double3 place);
+
+}  // namespace vsplit::bake
