@@ -35,7 +35,7 @@ struct BakeCommand {
 
     int run() const;
     /// A scene into a progressive GLB.
-    int run_scene(const bake::CollapseOptions& options) const;
+    int run_scene(bake::CollapseOptions options) const;
     /// The mesh to bake; if the input is a cloud of points, the surface made of it, told in `surface`.
     Result<bake::MeshFile> load(const bake::Progress& progress, std::optional<CloudSurface>& surface,
                                 int& exit) const;
@@ -68,7 +68,7 @@ Result<bake::MeshFile> BakeCommand::load(const bake::Progress& progress, std::op
     return load_mesh(input, exit);
 }
 
-int BakeCommand::run_scene(const bake::CollapseOptions& options) const {
+int BakeCommand::run_scene(bake::CollapseOptions options) const {
     const auto start = std::chrono::steady_clock::now();
     auto bytes = bake::read_file(input.path);
     if (!bytes) return fail_input(input.path, bytes.error());
@@ -79,10 +79,21 @@ int BakeCommand::run_scene(const bake::CollapseOptions& options) const {
     if (!scene) return exit;
     *bytes = {};
     ProgressBar bar(common);
+    options.part_of = scene->part_of;
     auto result = bake::collapse(scene->mesh, options, bar.callback());
     if (!result) return fail_input(input.path, result.error());
     auto stream = write_progressive_mesh(result->mesh, write);
     if (!stream) return fail_output(output.path, stream.error());
+    // Version 0 of the format has no attributes, and a scene without them would be none.
+    Limits limits;
+    limits.max_bytes = std::uint64_t{1} << 36;
+    const auto back = read_progressive_mesh(*stream, limits);
+    if (!back) return fail_output(output.path, back.error());
+    if (back->attributes.size() != result->mesh.attributes.size() ||
+        back->groups.size() != result->mesh.groups.size())
+        return fail_output(output.path,
+                           {ErrorCode::kUnsupported,
+                            "this version's .pmesh does not hold attributes and groups", Error::kNowhere, 0});
     const std::size_t triangles = result->mesh.triangles.size(), splits = result->mesh.splits.size();
     const std::size_t level = level_for_triangles(result->mesh, triangles_for_ratio(result->mesh, show));
     LiveMesh live(std::move(result->mesh));

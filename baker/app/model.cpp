@@ -114,6 +114,7 @@ Result<Model> load_model(const InputOptions& input, const CollapseFlags& flags, 
             if (!read) return read.error();
             model.scene = std::move(*read);
             full = std::move(model.scene->mesh);
+            options.part_of = std::move(model.scene->part_of);
             model.scene->mesh = {};
             for (const Attribute& attribute : full.attributes)
                 model.scene->mesh.attributes.push_back(

@@ -11,7 +11,6 @@ import harness
 import scenes
 
 SCRIPT = pathlib.Path(__file__).resolve().parent.parent / 'gltf' / 'validate.mjs'
-SCHEMA = pathlib.Path(__file__).resolve().parents[2] / 'formats/gltf/VSPLIT_progressive_mesh/schema/VSPLIT_progressive_mesh.schema.json'
 FORMATS = {'plain': [], 'quantized': ['--quantized'], 'draco': ['--draco'], 'meshopt': ['--meshopt'], 'both': ['--quantized', '--meshopt'],
            'shared': ['--shared-vertices']}
 
@@ -21,7 +20,9 @@ def triangles_of(document, mesh):
                if p.get('mode', 4) == 4 and 'indices' in p)
 
 
-class Scenes(CommandTest):
+class SceneTest(CommandTest):
+    """Has every scene in its folder, and what the validator says of them."""
+
     def setUp(self):
         super().setUp()
         self.scenes = scenes.write_all(self.folder)
@@ -56,6 +57,8 @@ class Scenes(CommandTest):
         for name, source in written.items():
             self.assertLessEqual(set(faults[name]), set(faults[source]), f'{name}, made of {source}')
 
+
+class Scenes(SceneTest):
     def test_levels_in_all_formats(self):
         written = {}
         for scene in self.scenes:
@@ -118,36 +121,6 @@ class Scenes(CommandTest):
         said = self.json('lods', 'textured.gltf', '--ratios', '1', '-o', 'out.glb', '-f')
         self.assertEqual(len(said['notes']), 1)
         self.assertEqual(glb_json(self.path('out.glb'))['images'][0]['uri'], 'outside%20picture.png')
-
-    def test_progressive_scenes(self):
-        written = {}
-        for scene in self.scenes:
-            stem = scene.split('.')[0]
-            out = f'{stem}.vsplit.glb'
-            said = self.json('bake', scene, '--show', '0.2', '-o', out)
-            written[out] = scene
-            self.assertEqual(self.json('info', out)['triangles'], said['ratio_1_triangles'])
-            self.vsplit('verify', out, '--against', scene)
-            # Levels cut from it are those that the scene gives, but for numbers of accessors.
-            for source in (scene, out):
-                self.vsplit('lods', source, '--ratios', '1,0.3', '-o', f'{stem}-from.glb', '-f')
-                document = glb_json(self.path(f'{stem}-from.glb'))
-                counts = sorted(triangles_of(document, m) for m in range(len(document['meshes'])))
-                if source == scene:
-                    direct = (counts, document['nodes'])
-                else:
-                    self.assertEqual((counts, document['nodes']), direct, scene)
-            written[f'{stem}-from.glb'] = scene
-            for extension in ('glb', 'ply', 'obj'):
-                self.vsplit('extract', out, '--ratio', '0.5', '-o', f'{stem}-half.{extension}')
-            written[f'{stem}-half.glb'] = scene
-            try:
-                import jsonschema
-            except ImportError:
-                print('SKIPPED: no jsonschema, the extension is not held against its schema', file=sys.stderr)
-            else:
-                jsonschema.validate(glb_json(self.path(out))['extensions']['VSPLIT_progressive_mesh'], json.loads(SCHEMA.read_text()))
-        self.same_or_fewer(written, self.scenes)
 
     def test_errors_and_pixels(self):
         said = self.json('lods', 'assembly.glb', '--errors', '0,0.05,1', '-o', 'errors.glb')
