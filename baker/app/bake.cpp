@@ -9,10 +9,15 @@
 #include <optional>
 
 #include "cloud.hpp"
+#include "collapse_flags.hpp"
 #include "command.hpp"
 #include "input.hpp"
+#include "levels.hpp"
+#include "model.hpp"
 #include "vsplit/bake/collapse.hpp"
 #include "vsplit/bake/files.hpp"
+#include "vsplit/bake/scene.hpp"
+#include "vsplit/live_mesh.hpp"
 #include "vsplit/write.hpp"
 
 namespace vsplit::app {
@@ -23,34 +28,18 @@ struct BakeCommand {
     InputOptions input;
     CloudOptions cloud;
     Output output;
-    std::string cost = "quadric", placement = "optimal";
-    std::vector<std::string> locks;
+    CollapseFlags collapse;
     WriteOptions write;
+    double show = 0;  ///< Of a progressive GLB, the ratio that viewers see.
+    bool meshopt = false, draco = false;
 
     int run() const;
+    /// A scene into a progressive GLB.
+    int run_scene(bake::CollapseOptions options) const;
     /// The mesh to bake; if the input is a cloud of points, the surface made of it, told in `surface`.
     Result<bake::MeshFile> load(const bake::Progress& progress, std::optional<CloudSurface>& surface,
                                 int& exit) const;
-    /// The lock list as options; the reason if one is unknown.
-    std::optional<std::string> set_locks(bake::CollapseOptions& options) const;
 };
-
-std::optional<std::string> BakeCommand::set_locks(bake::CollapseOptions& options) const {
-    for (const std::string& lock : locks) {
-        if (lock == "boundary") {
-            options.lock_boundary = true;
-        } else if (lock.rfind("features=", 0) == 0) {
-            char* end = nullptr;
-            const double degrees = std::strtod(lock.c_str() + 9, &end);
-            if (*end != 0 || end == lock.c_str() + 9 || !(degrees > 0 && degrees < 180))
-                return "--lock features=ANGLE wants degrees between 0 and 180";
-            options.lock_features_degrees = degrees;
-        } else {
-            return "--lock knows boundary and features=ANGLE, not " + lock;
-        }
-    }
-    return std::nullopt;
-}
 
 Result<bake::MeshFile> BakeCommand::load(const bake::Progress& progress, std::optional<CloudSurface>& surface,
                                          int& exit) const {
@@ -79,6 +68,72 @@ Result<bake::MeshFile> BakeCommand::load(const bake::Progress& progress, std::op
     return load_mesh(input, exit);
 }
 
+int BakeCommand::run_scene(bake::CollapseOptions options) const {
+    const auto start = std::chrono::steady_clock::now();
+    auto bytes = bake::read_file(input.path);
+    if (!bytes) return fail_input(input.path, bytes.error());
+    if (!is_gltf(*bytes, extension_of(input.path)))
+        return fail_usage("a progressive GLB is made of a glTF scene; bake a mesh to a .pmesh");
+    int exit = kDone;
+    auto scene = load_scene(input, *bytes, exit);
+    if (!scene) return exit;
+    *bytes = {};
+    ProgressBar bar(common);
+    options.part_of = scene->part_of;
+    auto result = bake::collapse(scene->mesh, options, bar.callback());
+    if (!result) return fail_input(input.path, result.error());
+    auto stream = write_progressive_mesh(result->mesh, write);
+    if (!stream) return fail_output(output.path, stream.error());
+    // Version 0 of the format has no attributes, and a scene without them would be none.
+    Limits limits;
+    limits.max_bytes = std::uint64_t{1} << 36;
+    const auto back = read_progressive_mesh(*stream, limits);
+    if (!back) return fail_output(output.path, back.error());
+    if (back->attributes.size() != result->mesh.attributes.size() ||
+        back->groups.size() != result->mesh.groups.size())
+        return fail_output(output.path,
+                           {ErrorCode::kUnsupported,
+                            "this version's .pmesh does not hold attributes and groups", Error::kNowhere, 0});
+    const std::size_t triangles = result->mesh.triangles.size(), splits = result->mesh.splits.size();
+    const std::size_t level = level_for_triangles(result->mesh, triangles_for_ratio(result->mesh, show));
+    LiveMesh live(std::move(result->mesh));
+    live.go_to(level);
+    const bake::GltfLevel shown{live.snapshot(), live.error()};
+    bake::SceneFormat format;
+    format.meshopt = meshopt;
+    format.draco = draco;
+    auto glb = bake::encode_progressive_scene(*scene, shown, *stream, format);
+    if (!glb) return fail_output(output.path, glb.error());
+    if (const int failed = write_output(output, *glb)) return failed;
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const double error = shown.error * scene->unit;
+    if (common.json && !common.quiet)
+        print_json({{"input", input.path},
+                    {"output", output.path},
+                    {"read", to_json(scene->report)},
+                    {"ratio_1_triangles", triangles},
+                    {"meshes", scene->parts.size()},
+                    {"primitives", scene->primitives.size()},
+                    {"attributes", scene->mesh.attributes.size()},
+                    {"splits", splits},
+                    {"shown", {{"triangles", shown.mesh.triangles.size()}, {"error", error}}},
+                    {"stream_bytes", stream->size()},
+                    {"bytes", glb->size()},
+                    {"seconds", seconds},
+                    {"notes", scene->notes}});
+    say(common, fmt::format("{}: {} triangles in {} meshes, {} primitives, {} attributes ({})", input.path,
+                            with_commas(triangles), scene->parts.size(), scene->primitives.size(),
+                            scene->mesh.attributes.size(), scene->report.format));
+    for (const std::string& line : describe(scene->report)) say(common, "  " + line);
+    say(common,
+        fmt::format("{}: shows {} triangles (error {}), {} splits, {} bytes, {} of them stream, in {:.2f} s",
+                    output.path, with_commas(shown.mesh.triangles.size()), short_number(error),
+                    with_commas(splits), with_commas(glb->size()), with_commas(stream->size()), seconds));
+    if (!common.quiet)
+        for (const std::string& note : scene->notes) fmt::print(stderr, "vsplit: {}: {}\n", input.path, note);
+    return kDone;
+}
+
 int BakeCommand::run() const {
     using Clock = std::chrono::steady_clock;
     const auto start = Clock::now();
@@ -86,10 +141,9 @@ int BakeCommand::run() const {
     if (common.threads > 0)
         limit.emplace(tbb::global_control::max_allowed_parallelism, std::size_t(common.threads));
     bake::CollapseOptions options;
-    options.cost = cost == "paper" ? bake::Cost::kPaper : bake::Cost::kQuadric;
-    options.placement = placement == "endpoint" ? bake::Placement::kEndpoint : bake::Placement::kOptimal;
-    if (const auto reason = set_locks(options)) return fail_usage(*reason);
+    if (const auto reason = collapse.set(options)) return fail_usage(*reason);
     if (const int refused = check_output(output)) return refused;
+    if (extension_of(output.path) == ".glb") return run_scene(options);
 
     int exit = kDone;
     ProgressBar bar(common);
@@ -170,26 +224,24 @@ void add_bake(CLI::App& app, int& exit) {
         "  vsplit bake hero.glb --weights COLOR_0.r -o hero.pmesh     painted red = keep\n"
         "  vsplit bake scan.ply --weights scan-weights.txt --cost paper -o scan.pmesh\n"
         "  vsplit bake scan.xyz -o scan.pmesh                         points: reconstructed first\n"
+        "  vsplit bake hero.glb -o hero.vsplit.glb                    the scene too, as a progressive GLB\n"
         "Reads OBJ, PLY, OFF, STL, glTF and GLB; point clouds as .xyz .txt .pts .asc .csv .ply .pcd.");
     sub->add_option("input", command->input.path, "Mesh or scene")->required()->type_name("IN");
-    command->output.add_to(*sub, "The .pmesh to write");
+    command->output.add_to(*sub,
+                           "The .pmesh to write; or .glb, of a scene: a progressive GLB (formats/gltf)");
     command->input.add_to(*sub);
     command->cloud.add_to(*sub);
-    sub->add_option("--cost", command->cost, "What a collapse costs: quadric, or paper (docs/collapse.md)")
-        ->check(CLI::IsMember({"quadric", "paper"}))
-        ->capture_default_str();
-    sub->add_option("--placement", command->placement,
-                    "Where the vertex that remains is put: optimal, or endpoint")
-        ->check(CLI::IsMember({"optimal", "endpoint"}))
-        ->capture_default_str();
-    sub->add_option(
-           "--lock", command->locks,
-           "What never changes: boundary, features=ANGLE (degrees between triangles); may be repeated")
-        ->type_name("WHAT")
-        ->allow_extra_args(false);
+    command->collapse.add_to(*sub);
     sub->add_option("--block-bytes", command->write.block_bytes, "Size that blocks of splits aim at")
         ->check(CLI::Range(1024, 1 << 24))
         ->capture_default_str();
+    sub->add_option("--show", command->show, "Of a progressive GLB: the ratio that any viewer shows")
+        ->check(CLI::Range(0.0, 1.0))
+        ->capture_default_str();
+    sub->add_flag("--meshopt", command->meshopt,
+                  "Of a progressive GLB: EXT_meshopt_compression of what it shows");
+    sub->add_flag("--draco", command->draco, "The same with KHR_draco_mesh_compression")
+        ->excludes("--meshopt");
     command->common.add_to(*sub);
     sub->callback([command, &exit] { exit = command->run(); });
 }

@@ -114,20 +114,6 @@ void ProgressBar::clear() {
     dirty_ = false;
 }
 
-Result<ProgressiveMesh> load_progressive(const std::string& path, const Common&, int& exit) {
-    auto bytes = bake::read_file(path);
-    if (!bytes) {
-        exit = fail_input(path, bytes.error());
-        return bytes.error();
-    }
-    // A person's own file on a person's own machine: what fits in memory may be read.
-    Limits limits;
-    limits.max_bytes = std::uint64_t{1} << 36;
-    auto mesh = read_progressive_mesh(*bytes, limits);
-    if (!mesh) exit = fail_input(path, mesh.error());
-    return mesh;
-}
-
 std::string extension_of(const std::string& path) {
     std::string extension = std::filesystem::path(path).extension().string();
     std::transform(extension.begin(), extension.end(), extension.begin(),

@@ -78,9 +78,6 @@ class ProgressBar {
     double last_ = 0;
 };
 
-/// Reads a .pmesh whole; on failure `exit` is set and the message said.
-Result<ProgressiveMesh> load_progressive(const std::string& path, const Common& common, int& exit);
-
 /// ".ply", lower case, of "Dir/Name.PLY".
 std::string extension_of(const std::string& path);
 /// "1,234,567".

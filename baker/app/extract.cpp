@@ -6,6 +6,7 @@
 
 #include "command.hpp"
 #include "levels.hpp"
+#include "model.hpp"
 #include "vsplit/bake/gltf.hpp"
 #include "vsplit/bake/meshes.hpp"
 #include "vsplit/live_mesh.hpp"
@@ -31,8 +32,11 @@ int ExtractCommand::run() const {
         return fail_usage("extract writes .glb, .ply or .obj, not '" + extension + "'");
     if (const int refused = check_output(output)) return refused;
     int exit = kDone;
-    auto mesh = load_progressive(input, common, exit);
-    if (!mesh) return exit;
+    InputOptions source;
+    source.path = input;
+    auto model = load_model(source, {}, common, exit);
+    if (!model) return exit;
+    ProgressiveMesh* mesh = &model->mesh;
 
     std::optional<std::string> note;
     std::size_t level = 0;
@@ -52,21 +56,31 @@ int ExtractCommand::run() const {
             note = fmt::format("{} vertices asked for, {} is the nearest",
                                with_commas(std::uint64_t(vertices)), with_commas(got));
     } else {
-        level = level_for_error(*mesh, error);
+        level = level_for_error(*mesh, model->mesh_error(error));
     }
-    const double recorded = error_at(*mesh, level);
+    const double recorded = model->world_error(error_at(*mesh, level));
     const std::size_t full = mesh->triangles.size();
+    const double own_error = error_at(*mesh, level);
     LiveMesh live(std::move(*mesh));
     live.go_to(level);
-    const Mesh cut = live.snapshot();
+    const bake::GltfLevel one{live.snapshot(), own_error};
+    const Mesh& cut = one.mesh;
     std::vector<std::byte> bytes;
-    if (extension == ".glb") {
-        const bake::GltfLevel one{cut, recorded};
-        auto glb = bake::encode_glb({&one, 1});
+    if (extension == ".glb" || model->scene) {
+        auto glb = model->encode({&one, 1}, {});
         if (!glb) return fail_output(output.path, glb.error());
         bytes = std::move(*glb);
-    } else {
-        bytes = extension == ".ply" ? bake::encode_ply(cut) : bake::encode_obj(cut);
+    }
+    if (extension != ".glb") {
+        // A scene's meshes are put where its nodes place them.
+        Mesh placed;
+        if (model->scene) {
+            auto world = bake::parse_gltf(bytes, "");
+            if (!world) return fail_output(output.path, world.error());
+            placed = std::move(world->mesh);
+        }
+        const Mesh& written = model->scene ? placed : cut;
+        bytes = extension == ".ply" ? bake::encode_ply(written) : bake::encode_obj(written);
     }
     if (const int failed = write_output(output, bytes)) return failed;
     const double kept = full > 0 ? double(cut.triangles.size()) / double(full) : 1;
@@ -94,14 +108,18 @@ int ExtractCommand::run() const {
 
 void add_extract(CLI::App& app, int& exit) {
     auto command = std::make_shared<ExtractCommand>();
-    CLI::App* sub = app.add_subcommand("extract", "Cut one level of detail out of a .pmesh");
+    CLI::App* sub =
+        app.add_subcommand("extract", "Cut one level of detail out of a .pmesh or progressive GLB");
     sub->footer(
         "Examples:\n"
         "  vsplit extract bunny.pmesh --ratio 0.4 -o bunny-40.glb\n"
         "  vsplit extract bunny.pmesh --triangles 5000 -o bunny-5k.ply\n"
         "  vsplit extract bunny.pmesh --error 0.001 -o bunny-fine.obj     coarsest level within that "
         "distance");
-    sub->add_option("input", command->input, "The .pmesh")->required()->type_name("FILE");
+    sub->add_option("input", command->input,
+                    "The .pmesh, progressive GLB, or a mesh or scene (baked on the spot)")
+        ->required()
+        ->type_name("FILE");
     command->output.add_to(*sub, "Mesh to write: .glb, .ply or .obj");
     sub->add_option("--ratio", command->ratio, "Triangles kept over triangles of the input, 0 to 1")
         ->check(CLI::Range(0.0, 1.0));

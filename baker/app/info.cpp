@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "command.hpp"
-#include "vsplit/bake/files.hpp"
+#include "model.hpp"
 
 namespace vsplit::app {
 namespace {
@@ -45,18 +45,20 @@ Json to_json(const FileInfo& info) {
 }
 
 int InfoCommand::run() const {
-    auto bytes = bake::read_file(input);
-    if (!bytes) return fail_input(input, bytes.error());
+    int exit = kDone;
+    const auto file = read_stream_file(input, exit);
+    if (!file) return exit;
+    const auto bytes = file->stream();
     Limits limits;
     limits.max_bytes = std::uint64_t{1} << 36;
-    auto info = read_info(*bytes, limits);
+    auto info = read_info(bytes, limits);
     if (!info) return fail_input(input, info.error());
-    if (bytes->size() != info->file_bytes)
+    if (bytes.size() != info->file_bytes)
         return fail_input(
             input,
-            {bytes->size() < info->file_bytes ? ErrorCode::kTruncated : ErrorCode::kMalformed,
-             fmt::format("the file has {} bytes, its header announces {}", bytes->size(), info->file_bytes),
-             std::min<std::uint64_t>(bytes->size(), info->file_bytes), 0});
+            {bytes.size() < info->file_bytes ? ErrorCode::kTruncated : ErrorCode::kMalformed,
+             fmt::format("the file has {} bytes, its header announces {}", bytes.size(), info->file_bytes),
+             std::min<std::uint64_t>(bytes.size(), info->file_bytes), 0});
     if (common.quiet) return kDone;
     if (common.json) {
         print_json(to_json(*info));
@@ -88,9 +90,11 @@ int InfoCommand::run() const {
 
 void add_info(CLI::App& app, int& exit) {
     auto command = std::make_shared<InfoCommand>();
-    CLI::App* sub = app.add_subcommand("info", "Say what a .pmesh holds, from its header and table alone");
+    CLI::App* sub = app.add_subcommand(
+        "info",
+        "Say what a .pmesh, or the progressive GLB around one, holds, from its header and table alone");
     sub->footer("Example:\n  vsplit info bunny.pmesh --json");
-    sub->add_option("input", command->input, "The .pmesh")->required()->type_name("FILE");
+    sub->add_option("input", command->input, "The .pmesh or progressive GLB")->required()->type_name("FILE");
     command->common.add_to(*sub);
     sub->callback([command, &exit] { exit = command->run(); });
 }

@@ -6,16 +6,12 @@
 
 #include <filesystem>
 
+#include "model.hpp"
 #include "vsplit/bake/files.hpp"
 #include "vsplit/bake/gltf.hpp"
 
 namespace vsplit::app {
 namespace {
-
-bool is_gltf(std::span<const std::byte> bytes, const std::string& extension) {
-    if (bytes.size() >= 4 && std::memcmp(bytes.data(), "glTF", 4) == 0) return true;
-    return extension == ".gltf" || extension == ".glb";
-}
 
 bake::Weld weld_of(const std::string& name) {
     if (name == "none") return bake::Weld::kNone;

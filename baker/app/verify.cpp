@@ -8,6 +8,7 @@
 
 #include "command.hpp"
 #include "input.hpp"
+#include "model.hpp"
 #include "vsplit/bake/files.hpp"
 #include "vsplit/bake/meshes.hpp"
 #include "vsplit/live_mesh.hpp"
@@ -95,13 +96,14 @@ std::uint64_t hash_buffers(const LiveMesh& live) {
 
 int VerifyCommand::run() const {
     std::vector<Check> checks;
-    auto bytes = bake::read_file(path);
-    if (!bytes) return fail_input(path, bytes.error());
+    int exit = kDone;
+    const auto file = read_stream_file(path, exit);
+    if (!file) return exit;
     Limits limits;
     limits.max_bytes = std::uint64_t{1} << 36;
-    auto info = read_info(*bytes, limits);
+    auto info = read_info(file->stream(), limits);
     if (!info) return fail_input(path, info.error());
-    auto mesh = read_progressive_mesh(*bytes, limits);
+    auto mesh = read_progressive_mesh(file->stream(), limits);
     if (!mesh) return fail_input(path, mesh.error());
     checks.push_back({"checksums and structure", true,
                       fmt::format("header, table, base and {} blocks", info->blocks.size())});
@@ -147,11 +149,18 @@ int VerifyCommand::run() const {
     checks.push_back({"forward then back restores every byte", bad.empty(),
                       bad.empty() ? fmt::format("{} prefixes", ends.size()) : bad});
     if (!against.path.empty()) {
-        int exit = kDone;
-        auto input = load_mesh(against, exit);
-        if (!input) return exit;
         live.go_to(live.max_level());
-        checks.push_back(compare(live.snapshot(), input->mesh));
+        if (file->carried) {
+            auto original = bake::read_file(against.path);
+            if (!original) return fail_input(against.path, original.error());
+            auto scene = load_scene(against, *original, exit);
+            if (!scene) return exit;
+            checks.push_back(compare(live.snapshot(), scene->mesh));
+        } else {
+            auto input = load_mesh(against, exit);
+            if (!input) return exit;
+            checks.push_back(compare(live.snapshot(), input->mesh));
+        }
     }
 
     const bool passed = std::all_of(checks.begin(), checks.end(), [](const Check& c) { return c.passed; });
@@ -172,11 +181,11 @@ int VerifyCommand::run() const {
 
 void add_verify(CLI::App& app, int& exit) {
     auto command = std::make_shared<VerifyCommand>();
-    CLI::App* sub = app.add_subcommand(
-        "verify",
-        "Check a .pmesh: checksums, every prefix, refinement and its undoing, and the input it was made of");
+    CLI::App* sub = app.add_subcommand("verify",
+                                       "Check a .pmesh, or the progressive GLB around one: checksums, every "
+                                       "prefix, refinement and its undoing, and the input it was made of");
     sub->footer("Example:\n  vsplit verify bunny.pmesh --against bunny.obj");
-    sub->add_option("input", command->path, "The .pmesh")->required()->type_name("FILE");
+    sub->add_option("input", command->path, "The .pmesh or progressive GLB")->required()->type_name("FILE");
     sub->add_option("--against", command->against.path, "The mesh or scene that it was baked from")
         ->type_name("IN");
     command->against.add_to(*sub);

@@ -88,23 +88,38 @@ Result<AccessorReader> AccessorReader::open(Document& document, int accessor, co
     const std::uint64_t bytes = component_size(out.type_);
     if (bytes == 0)
         return malformed(here, "component type " + std::to_string(out.type_) + " is not one of glTF's");
+    out.shape_ = source.type;
+    int columns = 1;
     switch (source.type) {
         case TINYGLTF_TYPE_SCALAR:
-            out.components_ = 1;
+            out.rows_ = 1;
             break;
         case TINYGLTF_TYPE_VEC2:
-            out.components_ = 2;
+            out.rows_ = 2;
             break;
         case TINYGLTF_TYPE_VEC3:
-            out.components_ = 3;
+            out.rows_ = 3;
             break;
         case TINYGLTF_TYPE_VEC4:
-            out.components_ = 4;
+            out.rows_ = 4;
+            break;
+        case TINYGLTF_TYPE_MAT2:
+            out.rows_ = columns = 2;
+            break;
+        case TINYGLTF_TYPE_MAT3:
+            out.rows_ = columns = 3;
+            break;
+        case TINYGLTF_TYPE_MAT4:
+            out.rows_ = columns = 4;
             break;
         default:
-            return malformed(here, "a matrix where a scalar or a vector belongs");
+            return malformed(here, "its type is not one of glTF's");
     }
-    out.size_ = bytes * static_cast<std::uint64_t>(out.components_);
+    out.components_ = out.rows_ * columns;
+    // Columns of matrices begin at multiples of four bytes (glTF 2.0, section 3.6.2.4).
+    out.column_ = bytes * static_cast<std::uint64_t>(out.rows_);
+    if (columns > 1) out.column_ = (out.column_ + 3) / 4 * 4;
+    out.size_ = out.column_ * static_cast<std::uint64_t>(columns);
     if (out.count_ == 0) return malformed(here, "no elements");
     if (source.bufferView >= 0) {
         const auto number = static_cast<std::size_t>(source.bufferView);
@@ -179,17 +194,15 @@ const std::byte* AccessorReader::element(std::uint64_t i) const {
         if (low < sparse_count_ && load_index(sparse_indices_ + low * size, sparse_type_) == i)
             return sparse_values_ + low * size_;
     }
-    static constexpr std::byte zeros[16] = {};
+    static constexpr std::byte zeros[64] = {};
     return base_ == nullptr ? zeros : base_ + i * stride_;
 }
 
-std::array<float, 4> AccessorReader::read(std::uint64_t i) const {
+void AccessorReader::read(std::uint64_t i, std::span<float> out) const {
     const std::byte* at = element(i);
-    std::array<float, 4> out{};
-    const std::uint64_t size = component_size(type_);
-    for (int c = 0; c < components_; ++c)
-        out[std::size_t(c)] = load_component(at + std::uint64_t(c) * size, type_, normalised_);
-    return out;
+    const std::uint64_t size = component_size(type_), rows = static_cast<std::uint64_t>(rows_);
+    for (std::uint64_t c = 0; c < out.size(); ++c)
+        out[c] = load_component(at + c / rows * column_ + c % rows * size, type_, normalised_);
 }
 
 std::uint32_t AccessorReader::index(std::uint64_t i) const {

@@ -4,9 +4,9 @@
 // A glTF accessor's elements, checked once and then read without further thought.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -25,12 +25,12 @@ class AccessorReader {
 
     std::uint64_t count() const { return count_; }
     int components() const { return components_; }
-    bool is_float() const { return type_ == TINYGLTF_COMPONENT_TYPE_FLOAT; }
+    int type() const { return shape_; }  ///< TINYGLTF_TYPE_VEC3, ...
     bool normalised() const { return normalised_; }
     int component_type() const { return type_; }
 
-    /// Element i < count() as floats, normalised integers in [-1, 1]; components that it lacks are 0.
-    std::array<float, 4> read(std::uint64_t i) const;
+    /// Element i < count() as floats, normalised integers in [-1, 1], into `out` of components() floats.
+    void read(std::uint64_t i, std::span<float> out) const;
     /// Element i < count() of a scalar unsigned accessor.
     std::uint32_t index(std::uint64_t i) const;
 
@@ -39,7 +39,9 @@ class AccessorReader {
 
     const std::byte* base_ = nullptr;  // nullptr: zeros
     std::uint64_t count_ = 0, stride_ = 0;
-    int components_ = 0, type_ = 0;
+    int components_ = 0, type_ = 0, shape_ = 0;
+    std::uint64_t column_ = 0;  // from one column of a matrix to the next; components are tight within
+    int rows_ = 0;
     bool normalised_ = false;
     // Sparse: strictly increasing element numbers and their values.
     const std::byte* sparse_values_ = nullptr;

@@ -3,6 +3,7 @@
 #include "container.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <string>
 
 namespace vsplit::bake {
@@ -67,7 +68,60 @@ Result<GltfContainer> open_glb(std::span<const std::byte> bytes) {
     return container;
 }
 
+void put_u32(std::vector<std::byte>& out, std::uint64_t value) {
+    for (int shift = 0; shift < 32; shift += 8) out.push_back(static_cast<std::byte>(value >> shift & 0xff));
+}
+
 }  // namespace
+
+Status check_json_depth(std::string_view json, std::uint64_t offset) {
+    constexpr int kMaxDepth = 200;
+    int depth = 0;
+    bool quoted = false;
+    for (std::size_t i = 0; i < json.size(); ++i) {
+        const char c = json[i];
+        if (quoted) {
+            if (c == '\\') ++i;
+            if (c == '"') quoted = false;
+        } else if (c == '"') {
+            quoted = true;
+        } else if (c == '{' || c == '[') {
+            if (++depth > kMaxDepth)
+                return Error{ErrorCode::kLimit,
+                             "the JSON nests more than " + std::to_string(kMaxDepth) + " deep", offset + i,
+                             0};
+        } else if (c == '}' || c == ']') {
+            --depth;
+        }
+    }
+    return Ok{};
+}
+
+Result<std::vector<std::byte>> seal_container(std::string json, std::span<const std::byte> bin) {
+    json.resize((json.size() + 3) / 4 * 4, ' ');
+    const std::size_t padded = (bin.size() + 3) / 4 * 4;
+    const std::uint64_t total = std::uint64_t{12} + 8 + json.size() + (padded > 0 ? 8 + padded : 0);
+    if (total > std::numeric_limits<std::uint32_t>::max())
+        return Error{ErrorCode::kLimit,
+                     "a GLB cannot be longer than 4 GiB, this one needs " + std::to_string(total) + " bytes",
+                     Error::kNowhere, 0};
+    std::vector<std::byte> out;
+    out.reserve(total);
+    put_u32(out, kMagic);
+    put_u32(out, 2);
+    put_u32(out, total);
+    put_u32(out, json.size());
+    put_u32(out, kJson);
+    const auto* from = reinterpret_cast<const std::byte*>(json.data());
+    out.insert(out.end(), from, from + json.size());
+    if (padded > 0) {
+        put_u32(out, padded);
+        put_u32(out, kBin);
+        out.insert(out.end(), bin.begin(), bin.end());
+        out.resize(total);
+    }
+    return out;
+}
 
 Result<GltfContainer> open_container(std::span<const std::byte> bytes) {
     if (bytes.size() >= 4 && u32(bytes, 0) == kMagic) return open_glb(bytes);

@@ -9,7 +9,9 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "vsplit/result.hpp"
 
@@ -26,5 +28,12 @@ struct GltfContainer {
 /// Checks magic, version, declared lengths and chunk order; hostile bytes are safe. A file that does not
 /// begin like a GLB is taken for JSON text.
 Result<GltfContainer> open_container(std::span<const std::byte> bytes);
+
+/// kLimit for JSON that nests more than 200 deep, which real documents are far from; whatever prints or walks
+/// it recurses. `offset`: where the text is in the file.
+Status check_json_depth(std::string_view json, std::uint64_t offset);
+
+/// A GLB of this JSON text and this BIN chunk (none if it is empty). kLimit above 4 GiB.
+Result<std::vector<std::byte>> seal_container(std::string json, std::span<const std::byte> bin);
 
 }  // namespace vsplit::bake

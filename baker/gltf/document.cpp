@@ -26,33 +26,9 @@ Error fault(ErrorCode code, std::string message) {
     return {code, std::move(message), Error::kNowhere, 0};
 }
 
-/// Real documents nest about ten deep; printing and tinygltf's extension values recurse.
-constexpr int kMaxDepth = 200;
-
-Status check_depth(const GltfContainer& container) {
-    int depth = 0;
-    bool quoted = false;
-    for (std::size_t i = 0; i < container.json.size(); ++i) {
-        const char c = container.json[i];
-        if (quoted) {
-            if (c == '\\') ++i;
-            if (c == '"') quoted = false;
-        } else if (c == '"') {
-            quoted = true;
-        } else if (c == '{' || c == '[') {
-            if (++depth > kMaxDepth)
-                return Error{ErrorCode::kLimit,
-                             "the JSON nests more than " + std::to_string(kMaxDepth) + " deep",
-                             container.json_offset + i, 0};
-        } else if (c == '}' || c == ']') {
-            --depth;
-        }
-    }
-    return Ok{};
-}
-
 Result<json> parse_json(const GltfContainer& container) {
-    if (Status depth = check_depth(container); !depth.ok()) return depth.error();
+    if (Status depth = check_json_depth(container.json, container.json_offset); !depth.ok())
+        return depth.error();
     try {
         return json::parse(container.json);
     } catch (const json::parse_error& error) {
@@ -187,7 +163,7 @@ struct DocumentBuilder {
             return fault(ErrorCode::kUnsupported,
                          "glTF version '" + version.substr(0, 20) + "', only 2 is read");
         if (Status status = check_extensions(shaped); !status.ok()) return status;
-        for (const char* array : {"buffers", "bufferViews", "meshes", "nodes"})
+        for (const char* array : {"buffers", "bufferViews", "meshes", "nodes", "skins"})
             if (!shaped.contains(array)) shaped[array] = json::array();
         out.binary = container->binary;
         out.total_bytes_ = file.size();
@@ -207,9 +183,15 @@ struct DocumentBuilder {
         // What tinygltf cannot read it leaves out; then our numbers would not be its own.
         bool whole = out.model.nodes.size() == shaped["nodes"].size() &&
                      out.model.meshes.size() == shaped["meshes"].size() &&
-                     out.model.bufferViews.size() == shaped["bufferViews"].size();
-        for (std::size_t m = 0; whole && m < out.model.meshes.size(); ++m)
-            whole = out.model.meshes[m].primitives.size() == shaped["meshes"][m]["primitives"].size();
+                     out.model.bufferViews.size() == shaped["bufferViews"].size() &&
+                     out.model.skins.size() == shaped["skins"].size();
+        for (std::size_t m = 0; whole && m < out.model.meshes.size(); ++m) {
+            const json& primitives = shaped["meshes"][m]["primitives"];
+            whole = out.model.meshes[m].primitives.size() == primitives.size();
+            for (std::size_t p = 0; whole && p < primitives.size(); ++p)
+                whole = out.model.meshes[m].primitives[p].targets.size() ==
+                        (primitives[p].contains("targets") ? primitives[p]["targets"].size() : 0);
+        }
         if (!whole) return fault(ErrorCode::kMalformed, "glTF: part of the document cannot be read");
         return Ok{};
     }
@@ -221,17 +203,22 @@ Result<Document> Document::parse(Bytes file, const std::string& folder) {
     return std::move(builder.out);
 }
 
+Result<Bytes> Document::stored(std::size_t buffer, std::uint64_t offset, std::uint64_t length) const {
+    if (!buffers_[buffer].there)
+        return fault(ErrorCode::kMalformed, "lies in a fallback buffer that is not stored");
+    const Bytes bytes = buffers_[buffer].bytes;
+    if (offset > bytes.size() || length > bytes.size() - offset)
+        return fault(ErrorCode::kMalformed, "reaches beyond the " + std::to_string(bytes.size()) +
+                                                " bytes of " + object_name("buffers", buffer));
+    return bytes.subspan(offset, length);
+}
+
 Result<Bytes> Document::view(std::size_t index) {
     const auto name = [&] { return object_name("bufferViews", index); };
     const auto cut = [&](std::size_t buffer, std::uint64_t offset, std::uint64_t length) -> Result<Bytes> {
-        if (!buffers_[buffer].there)
-            return fault(ErrorCode::kMalformed, name() + " lies in a fallback buffer that is not stored");
-        const Bytes bytes = buffers_[buffer].bytes;
-        if (offset > bytes.size() || length > bytes.size() - offset)
-            return fault(ErrorCode::kMalformed, name() + " reaches beyond the " +
-                                                    std::to_string(bytes.size()) + " bytes of " +
-                                                    object_name("buffers", buffer));
-        return bytes.subspan(offset, length);
+        auto bytes = stored(buffer, offset, length);
+        if (!bytes.ok()) return fault(bytes.error().code, name() + " " + bytes.error().message);
+        return bytes;
     };
     const auto compressed = meshopt.find(index);
     if (compressed == meshopt.end()) {

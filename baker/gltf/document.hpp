@@ -47,6 +47,9 @@ class Document {
     /// A buffer view's bytes, decompressed if need be. They live as long as the document.
     Result<Bytes> view(std::size_t index);
 
+    /// Bytes of a buffer as they are stored.
+    Result<Bytes> stored(std::size_t buffer, std::uint64_t offset, std::uint64_t length) const;
+
     /// Bytes of file and buffers together: what counts in the document are measured against.
     std::uint64_t total_bytes() const { return total_bytes_; }
 

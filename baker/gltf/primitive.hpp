@@ -14,6 +14,18 @@
 
 namespace vsplit::bake {
 
+/// One attribute of the vertices that are used, as floats; of morph target 2 "2/POSITION".
+struct PrimitiveAttribute {
+    std::string name;
+    int type = 0;            ///< tinygltf's: TINYGLTF_TYPE_VEC3, ...
+    int component_type = 0;  ///< As stored.
+    bool normalised = false;
+    std::vector<float> values;  ///< components_of(type) of each vertex; not checked for being finite.
+};
+
+/// 1 to 16; 0 if there is no such type.
+int components_of(int type);
+
 /// The vertices that its triangles name, in the file's order.
 struct PrimitiveMesh {
     std::vector<Float3> positions;
@@ -23,6 +35,9 @@ struct PrimitiveMesh {
     std::uint64_t listed = 0;            ///< which has this many.
     std::uint64_t leftover = 0;          ///< Indices too few for a last triangle.
     bool has_weights = false;
+    int position_type = 0;  ///< Component type, as stored.
+    bool position_normalised = false;
+    std::vector<PrimitiveAttribute> attributes;  ///< If they were asked for.
 };
 
 /// Where weights come from: an attribute and a component of it.
@@ -35,8 +50,10 @@ struct WeightChannel {
 /// Whether the mode is one of the three that make triangles.
 bool is_triangles(const tinygltf::Primitive& primitive);
 
-/// More than `max_triangles` are refused (kLimit).
+/// More than `max_triangles` are refused (kLimit). Attributes other than POSITION are read if
+/// `max_attribute_values` is not 0, which limits their floats (kLimit).
 Result<PrimitiveMesh> read_primitive(Document& document, std::size_t mesh, std::size_t primitive,
-                                     const WeightChannel& weights, std::uint64_t max_triangles);
+                                     const WeightChannel& weights, std::uint64_t max_triangles,
+                                     std::uint64_t max_attribute_values = 0);
 
 }  // namespace vsplit::bake

@@ -1,8 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The vsplit authors
 // SPDX-License-Identifier: MIT
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <exception>
 #include <limits>
 #include <map>
@@ -10,69 +8,15 @@
 
 #include "document.hpp"
 #include "primitive.hpp"
+#include "transforms.hpp"
 #include "vsplit/bake/gltf.hpp"
+#include "weight_channel.hpp"
 
 namespace vsplit::bake {
 namespace {
 
 Error fault(ErrorCode code, std::string message) {
     return {code, std::move(message), Error::kNowhere, 0};
-}
-
-/// Column-major, the last row being 0 0 0 1.
-using Matrix = std::array<double, 16>;
-constexpr Matrix kIdentity = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
-
-Matrix product(const Matrix& a, const Matrix& b) {
-    Matrix out{};
-    for (std::size_t column = 0; column < 4; ++column)
-        for (std::size_t row = 0; row < 4; ++row)
-            for (std::size_t k = 0; k < 4; ++k) out[column * 4 + row] += a[k * 4 + row] * b[column * 4 + k];
-    return out;
-}
-
-double determinant(const Matrix& m) {
-    return m[0] * (m[5] * m[10] - m[9] * m[6]) - m[4] * (m[1] * m[10] - m[9] * m[2]) +
-           m[8] * (m[1] * m[6] - m[5] * m[2]);
-}
-
-Matrix local_matrix(const tinygltf::Node& node) {
-    Matrix out = kIdentity;
-    if (node.matrix.size() == 16) {
-        std::copy(node.matrix.begin(), node.matrix.end(), out.begin());
-        out[3] = out[7] = out[11] = 0;
-        out[15] = 1;
-        return out;
-    }
-    if (node.rotation.size() == 4) {
-        double x = node.rotation[0], y = node.rotation[1], z = node.rotation[2], w = node.rotation[3];
-        // Files round quaternions to single precision; without this a deep tree would scale.
-        if (const double length = std::sqrt(x * x + y * y + z * z + w * w);
-            length > 0 && std::isfinite(length))
-            x /= length, y /= length, z /= length, w /= length;
-        out = {1 - 2 * (y * y + z * z),
-               2 * (x * y + z * w),
-               2 * (x * z - y * w),
-               0,
-               2 * (x * y - z * w),
-               1 - 2 * (x * x + z * z),
-               2 * (y * z + x * w),
-               0,
-               2 * (x * z + y * w),
-               2 * (y * z - x * w),
-               1 - 2 * (x * x + y * y),
-               0,
-               0,
-               0,
-               0,
-               1};
-    }
-    if (node.scale.size() == 3)
-        for (std::size_t column = 0; column < 3; ++column)
-            for (std::size_t row = 0; row < 3; ++row) out[column * 4 + row] *= node.scale[column];
-    if (node.translation.size() == 3)
-        std::copy(node.translation.begin(), node.translation.end(), out.begin() + 12);
-    return out;
 }
 
 struct Instance {
@@ -118,32 +62,6 @@ Result<std::vector<Instance>> place_meshes(const Document& document) {
             stack.push_back({std::size_t(*child), matrix});
     }
     return out;
-}
-
-/// "COLOR_0.r", or _WEIGHT, which is what encode_glb writes, if nothing was asked for.
-Result<WeightChannel> weight_channel(const std::string& text) {
-    if (text.empty() || text == "_WEIGHT") return WeightChannel{"_WEIGHT", 0, true};
-    const std::size_t dot = text.rfind('.');
-    const std::size_t component =
-        dot != text.npos && dot + 2 == text.size() ? std::string_view("rgba").find(text.back()) : text.npos;
-    if (dot == 0 || component == text.npos)
-        return fault(
-            ErrorCode::kArgument,
-            "a weight channel is an attribute and one of .r .g .b .a, as COLOR_0.r, not '" + text + "'");
-    return WeightChannel{text.substr(0, dot), int(component), false};
-}
-
-std::string attributes_there(const tinygltf::Model& model) {
-    std::map<std::string, int> names;
-    for (const tinygltf::Mesh& mesh : model.meshes)
-        for (const tinygltf::Primitive& primitive : mesh.primitives)
-            names.insert(primitive.attributes.begin(), primitive.attributes.end());
-    std::string text;
-    for (const auto& [name, accessor] : names) {
-        if (text.size() > 500) return text + ", ...";
-        text += (text.empty() ? "" : ", ") + name.substr(0, 100);
-    }
-    return text.empty() ? "nothing" : text;
 }
 
 /// The scene as it is put together.

@@ -17,6 +17,7 @@ enum class Kind {
     kIndex,        // into the top-level array `target`
     kIndices,      // array of the same
     kIndexMap,     // object of the same
+    kIndexMaps,    // array of such objects
     kUnsignedMap,  // object of small numbers
     kBool,
     kString,
@@ -76,17 +77,21 @@ constexpr Field kPrimitiveExtensions[] = {
 constexpr Field kPrimitive[] = {{"attributes", Kind::kIndexMap, true, "accessors"},
                                 {"indices", Kind::kIndex, false, "accessors"},
                                 {"mode", Kind::kUnsigned},
+                                {"targets", Kind::kIndexMaps, false, "accessors"},
                                 {"extensions", Kind::kObject, false, nullptr, 0, kPrimitiveExtensions}};
 constexpr Field kMesh[] = {{"primitives", Kind::kObjects, true, nullptr, 0, kPrimitive}};
 constexpr Field kLod[] = {{"ids", Kind::kIndices, true, "nodes"}};
 constexpr Field kNodeExtensions[] = {{"MSFT_lod", Kind::kObject, false, nullptr, 0, kLod}};
 constexpr Field kNode[] = {{"children", Kind::kIndices, false, "nodes"},
                            {"mesh", Kind::kIndex, false, "meshes"},
+                           {"skin", Kind::kIndex, false, "skins"},
                            {"matrix", Kind::kNumbers, false, nullptr, 16},
                            {"translation", Kind::kNumbers, false, nullptr, 3},
                            {"rotation", Kind::kNumbers, false, nullptr, 4},
                            {"scale", Kind::kNumbers, false, nullptr, 3},
                            {"extensions", Kind::kObject, false, nullptr, 0, kNodeExtensions}};
+constexpr Field kSkin[] = {{"joints", Kind::kIndices, true, "nodes"},
+                           {"inverseBindMatrices", Kind::kIndex, false, "accessors"}};
 constexpr Field kScene[] = {{"nodes", Kind::kIndices, false, "nodes"}};
 constexpr Field kAsset[] = {{"version", Kind::kString, true}, {"minVersion", Kind::kString}};
 constexpr Field kRoot[] = {{"asset", Kind::kObject, true, nullptr, 0, kAsset},
@@ -96,6 +101,7 @@ constexpr Field kRoot[] = {{"asset", Kind::kObject, true, nullptr, 0, kAsset},
                            {"scenes", Kind::kObjects, false, nullptr, 0, kScene},
                            {"nodes", Kind::kObjects, false, nullptr, 0, kNode},
                            {"meshes", Kind::kObjects, false, nullptr, 0, kMesh},
+                           {"skins", Kind::kObjects, false, nullptr, 0, kSkin},
                            {"accessors", Kind::kObjects, false, nullptr, 0, kAccessor},
                            {"bufferViews", Kind::kObjects, false, nullptr, 0, kBufferView},
                            {"buffers", Kind::kObjects, false, nullptr, 0, kBuffer}};
@@ -208,6 +214,11 @@ class Shaper {
                 return array(in, out, [&](json& from, json& to) { return index(from, field.target, to); });
             case Kind::kIndexMap:
                 return map(in, out, [&](json& from, json& to) { return index(from, field.target, to); });
+            case Kind::kIndexMaps:
+                return array(in, out, [&](json& from, json& to) {
+                    return map(from, to,
+                               [&](json& number, json& taken) { return index(number, field.target, taken); });
+                });
             case Kind::kUnsignedMap:
                 return map(in, out, [&](json& from, json& to) -> Status {
                     if (!whole(from, INT32_MAX)) return wrong("must be a whole number, not negative");

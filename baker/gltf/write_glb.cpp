@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "container.hpp"
 #include "coverage.hpp"
 #include "normals.hpp"
 #include "vsplit/bake/gltf.hpp"
@@ -93,10 +94,6 @@ double bounding_radius(const Mesh& mesh) {
     return 0.5 * std::sqrt(x * x + y * y + z * z);
 }
 
-void put_u32(std::vector<std::byte>& out, std::uint64_t value) {
-    for (int shift = 0; shift < 32; shift += 8) out.push_back(static_cast<std::byte>(value >> shift & 0xff));
-}
-
 Status check_levels(std::span<const GltfLevel> levels) {
     if (levels.empty()) return fault(ErrorCode::kArgument, "no level of detail to write");
     for (std::size_t k = 0; k < levels.size(); ++k) {
@@ -113,7 +110,7 @@ Status check_levels(std::span<const GltfLevel> levels) {
     return Ok{};
 }
 
-Result<std::vector<std::byte>> write_levels(std::span<const GltfLevel> levels) {
+Result<std::vector<std::byte>> write_levels(std::span<const GltfLevel> levels, const Screen& screen) {
     if (Status status = check_levels(levels); !status.ok()) return status.error();
     Contents contents;
     json nodes = json::array(), meshes = json::array();
@@ -138,7 +135,7 @@ Result<std::vector<std::byte>> write_levels(std::span<const GltfLevel> levels) {
         }
         nodes[0]["extensions"] = {{"MSFT_lod", {{"ids", ids}}}};
         nodes[0]["extras"] = {
-            {"MSFT_screencoverage", screen_coverage(errors, bounding_radius(levels[0].mesh))}};
+            {"MSFT_screencoverage", screen_coverage(errors, bounding_radius(levels[0].mesh), screen)}};
     }
     document["scene"] = 0;
     document["scenes"] = {{{"nodes", {0}}}};
@@ -149,34 +146,14 @@ Result<std::vector<std::byte>> write_levels(std::span<const GltfLevel> levels) {
     document["bufferViews"] = std::move(contents.views);
     document["buffers"] = json::array({{{"byteLength", contents.bytes.size()}}});
 
-    std::string text = document.dump();
-    text.resize((text.size() + 3) / 4 * 4, ' ');
-    const std::size_t length = contents.bytes.size(), padded = (length + 3) / 4 * 4;
-    const std::uint64_t total = std::uint64_t{12} + 8 + text.size() + 8 + padded;
-    if (total > std::numeric_limits<std::uint32_t>::max())
-        return fault(ErrorCode::kLimit, "a GLB cannot be longer than 4 GiB, these levels need " +
-                                            std::to_string(total) + " bytes");
-    std::vector<std::byte> out;
-    out.reserve(total);
-    put_u32(out, 0x46546C67);  // "glTF"
-    put_u32(out, 2);
-    put_u32(out, total);
-    put_u32(out, text.size());
-    put_u32(out, 0x4E4F534A);  // "JSON"
-    const auto* from = reinterpret_cast<const std::byte*>(text.data());
-    out.insert(out.end(), from, from + text.size());
-    put_u32(out, padded);
-    put_u32(out, 0x004E4942);  // "BIN"
-    out.insert(out.end(), contents.bytes.begin(), contents.bytes.end());
-    out.resize(total);
-    return out;
+    return seal_container(document.dump(), contents.bytes);
 }
 
 }  // namespace
 
-Result<std::vector<std::byte>> encode_glb(std::span<const GltfLevel> levels) {
+Result<std::vector<std::byte>> encode_glb(std::span<const GltfLevel> levels, const Screen& screen) {
     try {
-        return write_levels(levels);
+        return write_levels(levels, screen);
     } catch (const std::bad_alloc&) {
         return fault(ErrorCode::kLimit, "not enough memory for this GLB");
     }

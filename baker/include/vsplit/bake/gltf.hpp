@@ -24,6 +24,8 @@ struct GltfOptions {
     std::string weight_channel;
     /// Of all instances together; more: kLimit. A few nodes can repeat a mesh without end.
     std::uint64_t max_triangles = std::uint64_t{1} << 26;
+    /// Floats in all attributes together; more: kLimit. Only parse_scene reads attributes.
+    std::uint64_t max_attribute_values = std::uint64_t{1} << 30;
 };
 
 /// All triangle primitives (lists, strips, fans) of the default scene (the first one if none is called so,
@@ -36,6 +38,13 @@ struct GltfOptions {
 Result<MeshFile> parse_gltf(std::span<const std::byte> bytes, const std::string& folder,
                             const GltfOptions& options = {});
 
+/// The screen (16:9) for which switching distances are computed, and how many of its pixels a level's error
+/// may span while it is shown.
+struct Screen {
+    double lines = 1080;
+    double pixels = 1;
+};
+
 /// One level of detail.
 struct GltfLevel {
     Mesh mesh;
@@ -46,6 +55,6 @@ struct GltfLevel {
 /// (docs/lods.md has the formula). Smooth vertex normals are computed; painted weights travel as the
 /// attribute _WEIGHT. Passes the Khronos validator without errors or warnings. Errors: kArgument for no level
 /// or an empty mesh.
-Result<std::vector<std::byte>> encode_glb(std::span<const GltfLevel> levels);
+Result<std::vector<std::byte>> encode_glb(std::span<const GltfLevel> levels, const Screen& screen = {});
 
 }  // namespace vsplit::bake

@@ -1,0 +1,248 @@
+# SPDX-FileCopyrightText: 2026 The vsplit authors
+# SPDX-License-Identifier: MIT
+"""glTF scenes made for the tests, with what real assets have: skins, morph targets, several primitives that share points, instances,
+animations, lights, extensions, strips, sparse accessors, external files. Standard library only."""
+import base64
+import json
+import math
+import struct
+import zlib
+
+FLOAT, UBYTE, USHORT, UINT, BYTE, SHORT = 5126, 5121, 5123, 5125, 5120, 5122
+FORMATS = {FLOAT: 'f', UBYTE: 'B', USHORT: 'H', UINT: 'I', BYTE: 'b', SHORT: 'h'}
+WIDTHS = {'SCALAR': 1, 'VEC2': 2, 'VEC3': 3, 'VEC4': 4, 'MAT4': 16}
+
+
+def png(red, green, blue):
+    """A picture of 2 by 2 pixels."""
+    def chunk(kind, data):
+        return struct.pack('>I', len(data)) + kind + data + struct.pack('>I', zlib.crc32(kind + data))
+    rows = b''.join(b'\0' + bytes([red, green, blue] * 2) for _ in range(2))
+    return b'\x89PNG\r\n\x1a\n' + chunk(b'IHDR', struct.pack('>IIBBBBB', 2, 2, 8, 2, 0, 0, 0)) + chunk(b'IDAT', zlib.compress(rows)) + \
+        chunk(b'IEND', b'')
+
+
+class Scene:
+    def __init__(self):
+        self.root = {'asset': {'version': '2.0'}, 'scene': 0, 'scenes': [{'nodes': []}]}
+        self.bin = bytearray()
+
+    def add(self, array, thing):
+        self.root.setdefault(array, []).append(thing)
+        return len(self.root[array]) - 1
+
+    def use(self, *names):
+        used = self.root.setdefault('extensionsUsed', [])
+        used += [name for name in names if name not in used]
+
+    def view(self, data, **more):
+        self.bin += bytes(-len(self.bin) % 4)
+        at = len(self.bin)
+        self.bin += data
+        return self.add('bufferViews', {'buffer': 0, 'byteOffset': at, 'byteLength': len(data), **more})
+
+    def accessor(self, rows, component=FLOAT, kind='VEC3', bounds=False, padded=True, **more):
+        """Elements begin at multiples of four, as those of vertices must; indices are not `padded`."""
+        rows = [r if isinstance(r, (tuple, list)) else (r,) for r in rows]
+        width = WIDTHS[kind]
+        size = struct.calcsize(f'<{width}{FORMATS[component]}')
+        padding = bytes(-size % 4) if padded else b''
+        data = b''.join(struct.pack(f'<{width}{FORMATS[component]}', *r) + padding for r in rows)
+        stride = {'byteStride': size + len(padding)} if padding else {}
+        if bounds:
+            near = [struct.unpack('<f', struct.pack('<f', c))[0] for r in rows for c in r] if component == FLOAT else [c for r in rows for c in r]
+            more['min'] = [min(near[i::width]) for i in range(width)]
+            more['max'] = [max(near[i::width]) for i in range(width)]
+        return self.add('accessors', {'bufferView': self.view(data, **stride), 'componentType': component, 'count': len(rows), 'type': kind, **more})
+
+    def node(self, root=True, **node):
+        number = self.add('nodes', node)
+        if root:
+            self.root['scenes'][0]['nodes'].append(number)
+        return number
+
+    def glb(self):
+        root = dict(self.root)
+        root['buffers'] = [{'byteLength': len(self.bin)}]
+        text = json.dumps(root).encode()
+        text += b' ' * (-len(text) % 4)
+        data = bytes(self.bin) + bytes(-len(self.bin) % 4)
+        return struct.pack('<4sII', b'glTF', 2, 28 + len(text) + len(data)) + struct.pack('<I4s', len(text), b'JSON') + text + \
+            struct.pack('<I4s', len(data), b'BIN\0') + data
+
+    def gltf(self, uri=None):
+        """Text; the buffer is inside, or at `uri`."""
+        root = dict(self.root)
+        data = bytes(self.bin)
+        root['buffers'] = [{'byteLength': len(data), 'uri': uri or 'data:application/octet-stream;base64,' + base64.b64encode(data).decode()}]
+        return json.dumps(root).encode()
+
+
+def sheet(n, height=lambda u, v: 0.1 * math.sin(6 * u) * math.cos(5 * v)):
+    """(n + 1)^2 points of a bumpy square with normals and texture coordinates, and its triangles."""
+    points, normals, uvs, corners = [], [], [], []
+    for i in range(n + 1):
+        for j in range(n + 1):
+            u, v = j / n, i / n
+            e = 1e-4
+            dx, dy = (height(u + e, v) - height(u - e, v)) / (2 * e), (height(u, v + e) - height(u, v - e)) / (2 * e)
+            length = math.sqrt(dx * dx + dy * dy + 1)
+            points.append((u, v, height(u, v)))
+            normals.append((-dx / length, -dy / length, 1 / length))
+            uvs.append((u, v))
+    for i in range(n):
+        for j in range(n):
+            a = i * (n + 1) + j
+            corners += [a, a + 1, a + n + 2, a, a + n + 2, a + n + 1]
+    return points, normals, uvs, corners
+
+
+def tangents(normals):
+    out = []
+    for x, _, z in normals:
+        length = math.hypot(x, z)
+        out.append((z / length, 0.0, -x / length, 1.0 if x >= 0 else -1.0))
+    return out
+
+
+def skinned(n=12):
+    """A bar on two joints that bend, byte joints and weights of both kinds, an animation."""
+    s = Scene()
+    points, normals, uvs, corners = sheet(n)
+    weights = [(1 - p[1], p[1], 0.0, 0.0) for p in points]
+    byte_weights = [(255 - round(255 * w[1]), round(255 * w[1]), 0, 0) for w in weights]
+    joints = [(0 if w[0] else 0, 1 if w[1] else 0, 0, 0) for w in weights]
+    joints_byte = [(0, 1 if w[1] else 0, 0, 0) for w in byte_weights]
+    common = {'POSITION': s.accessor(points, bounds=True), 'NORMAL': s.accessor(normals), 'TANGENT': s.accessor(tangents(normals), kind='VEC4'),
+              'TEXCOORD_0': s.accessor(uvs, kind='VEC2')}
+    indices = s.accessor(corners, USHORT, 'SCALAR', padded=False)
+    image = s.add('images', {'bufferView': s.view(png(200, 80, 80)), 'mimeType': 'image/png'})
+    texture = s.add('textures', {'source': image})
+    material = s.add('materials', {'pbrMetallicRoughness': {'baseColorTexture': {'index': texture}}, 'doubleSided': True})
+    meshes = []
+    for joint, weight in ((s.accessor(joints, UBYTE, 'VEC4'), s.accessor(weights, kind='VEC4')),
+                          (s.accessor(joints_byte, USHORT, 'VEC4'), s.accessor(byte_weights, UBYTE, 'VEC4', normalized=True))):
+        meshes.append(s.add('meshes', {'primitives': [{'attributes': {**common, 'JOINTS_0': joint, 'WEIGHTS_0': weight}, 'indices': indices,
+                                                       'material': material}]}))
+    tip = s.node(root=False, name='tip', translation=[0, 1, 0])
+    base = s.node(name='base', children=[tip])
+    inverse = s.accessor([[1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1], [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, -1, 0, 1]], kind='MAT4')
+    skin = s.add('skins', {'joints': [base, tip], 'inverseBindMatrices': inverse})
+    for mesh in meshes:
+        s.node(mesh=mesh, skin=skin)
+    times = s.accessor([0.0, 1.0], kind='SCALAR', bounds=True)
+    turns = s.accessor([(0, 0, 0, 1), (math.sin(0.5), 0, 0, math.cos(0.5))], kind='VEC4')
+    s.add('animations', {'samplers': [{'input': times, 'output': turns}], 'channels': [{'sampler': 0, 'target': {'node': tip, 'path': 'rotation'}}]})
+    return s
+
+
+def morphing(n=10):
+    """Two targets, one of them sparse, animated weights, target names."""
+    s = Scene()
+    points, normals, uvs, corners = sheet(n)
+    rise = [(0.0, 0.0, 0.3 * math.sin(3 * p[0])) for p in points]
+    moved = list(range(0, len(points), 3))
+    sparse = s.add('accessors', {'componentType': FLOAT, 'count': len(points), 'type': 'VEC3', 'min': [0, 0, 0], 'max': [0.5, 0, 0], 'sparse': {
+        'count': len(moved), 'indices': {'bufferView': s.view(struct.pack(f'<{len(moved)}H', *moved)), 'componentType': USHORT},
+        'values': {'bufferView': s.view(struct.pack('<3f', 0.5, 0, 0) * len(moved))}}})
+    mesh = s.add('meshes', {'weights': [0.0, 0.5], 'extras': {'targetNames': ['rise', 'bend']}, 'primitives': [{
+        'attributes': {'POSITION': s.accessor(points, bounds=True), 'NORMAL': s.accessor(normals), 'TEXCOORD_0': s.accessor(uvs, kind='VEC2'),
+                       'COLOR_0': s.accessor([(255, 128, int(255 * u), 255) for u, _ in uvs], UBYTE, 'VEC4', normalized=True)},
+        'targets': [{'POSITION': s.accessor(rise, bounds=True), 'NORMAL': s.accessor([(0.1, 0.0, 0.0)] * len(points))}, {'POSITION': sparse}],
+        'indices': s.accessor(corners, USHORT, 'SCALAR', padded=False)}]})
+    still = s.node(mesh=mesh, name='face', weights=[0.25, 0.0])
+    moving = s.node(mesh=mesh, name='moving', translation=[2, 0, 0], children=[s.node(root=False, name='hat')])
+    times = s.accessor([0.0, 1.0], kind='SCALAR', bounds=True)
+    s.add('animations', {'samplers': [{'input': times, 'output': s.accessor([0.0, 0.0, 1.0, 1.0], kind='SCALAR')},
+                                      {'input': times, 'output': s.accessor([(2, 0, 0), (2, 1, 0)])}],
+                         'channels': [{'sampler': 0, 'target': {'node': still, 'path': 'weights'}},
+                                      {'sampler': 0, 'target': {'node': moving, 'path': 'weights'}},
+                                      {'sampler': 1, 'target': {'node': moving, 'path': 'translation'}}]})
+    return s
+
+
+def assembly(parts=12):
+    """Many primitives: a mesh of two that share a border, mirrored texture coordinates, one that is instanced, a strip, lines, two sets of
+    texture coordinates, custom attributes, lights, a camera, extensions of materials and of primitives, small and large scales."""
+    s = Scene()
+    s.use('KHR_lights_punctual', 'KHR_materials_transmission', 'KHR_materials_clearcoat', 'KHR_materials_variants')
+    s.root['extensions'] = {'KHR_lights_punctual': {'lights': [{'type': 'point', 'intensity': 5}]},
+                            'KHR_materials_variants': {'variants': [{'name': 'day'}, {'name': 'night'}]}}
+    glass = s.add('materials', {'name': 'glass', 'extensions': {'KHR_materials_transmission': {'transmissionFactor': 0.9}}})
+    paint = s.add('materials', {'name': 'paint', 'extensions': {'KHR_materials_clearcoat': {'clearcoatFactor': 1}}, 'extras': {'tag': [1, 2]}})
+    points, normals, uvs, corners = sheet(8)
+    mirrored = [(u if u <= 0.5 else 1 - u, v) for u, v in uvs]
+    shared = {'POSITION': s.accessor(points, bounds=True), 'NORMAL': s.accessor(normals), 'TEXCOORD_0': s.accessor(mirrored, kind='VEC2'),
+              'TEXCOORD_1': s.accessor([(round(65535 * u), round(65535 * v)) for u, v in uvs], USHORT, 'VEC2', normalized=True),
+              '_HEAT': s.accessor([u + v for u, v in uvs], kind='SCALAR'), '_ID': s.accessor([i % 200 for i in range(len(points))], UBYTE, 'SCALAR')}
+    half = len(corners) // 2 // 3 * 3
+    variants = {'KHR_materials_variants': {'mappings': [{'variants': [0], 'material': glass}, {'variants': [1], 'material': paint}]}}
+    two = s.add('meshes', {'name': 'two', 'primitives': [
+        {'attributes': shared, 'indices': s.accessor(corners[:half], USHORT, 'SCALAR', padded=False), 'material': glass, 'extensions': variants},
+        {'attributes': shared, 'indices': s.accessor(corners[half:], USHORT, 'SCALAR', padded=False), 'material': paint, 'extras': {'side': 'right'}}]})
+    for i in range(parts):
+        turn = 0.3 * i
+        s.node(mesh=two, name=f'two {i}', translation=[1.5 * (i % 4), 1.5 * (i // 4), 0], rotation=[0, 0, math.sin(turn), math.cos(turn)],
+               scale=[0.01 if i == 3 else -1.0 if i == 4 else 1.0] + [0.01 if i == 3 else 1.0] * 2)
+    strip = [c for i in range(8) for c in (i, 9 + i)]
+    lines = s.accessor([(0.0, 0.0, 1.0), (1.0, 1.0, 1.0)], bounds=True)
+    mixed = s.add('meshes', {'name': 'mixed', 'primitives': [
+        {'attributes': {'POSITION': lines}, 'mode': 1},
+        {'attributes': {'POSITION': shared['POSITION'], 'NORMAL': shared['NORMAL']}, 'indices': s.accessor(strip, UBYTE, 'SCALAR', padded=False), 'mode': 5}]})
+    light = s.node(root=False, extensions={'KHR_lights_punctual': {'light': 0}})
+    s.node(mesh=mixed, matrix=[100, 0, 0, 0, 0, 100, 0, 0, 0, 0, 100, 0, 5, 6, 7, 1], children=[light])
+    camera = s.add('cameras', {'type': 'perspective', 'perspective': {'yfov': 1, 'znear': 0.1}})
+    s.node(camera=camera, mesh=mixed, translation=[0, 0, 9])
+    return s
+
+
+def textured(name):
+    """A buffer and a picture in files of their own: the scene's text, and the files by name."""
+    s = Scene()
+    points, normals, uvs, corners = sheet(6)
+    image = s.add('images', {'uri': f'{name}%20picture.png'})
+    sampler = s.add('samplers', {'magFilter': 9729})
+    texture = s.add('textures', {'source': image, 'sampler': sampler})
+    material = s.add('materials', {'pbrMetallicRoughness': {'baseColorTexture': {'index': texture}}})
+    mesh = s.add('meshes', {'primitives': [{'attributes': {'POSITION': s.accessor(points, bounds=True), 'NORMAL': s.accessor(normals),
+                                                           'TEXCOORD_0': s.accessor(uvs, kind='VEC2')},
+                                            'indices': s.accessor(corners, USHORT, 'SCALAR', padded=False), 'material': material}]})
+    s.node(mesh=mesh)
+    return s.gltf(f'{name}.bin'), {f'{name}.bin': bytes(s.bin), f'{name} picture.png': png(10, 200, 30)}
+
+
+def quantised(n=8):
+    """KHR_mesh_quantization: shorts and bytes, undone by the node's scale."""
+    s = Scene()
+    s.use('KHR_mesh_quantization')
+    s.root['extensionsRequired'] = ['KHR_mesh_quantization']
+    points, normals, uvs, corners = sheet(n)
+    mesh = s.add('meshes', {'primitives': [{'attributes': {
+        'POSITION': s.accessor([tuple(round(4000 * c) for c in p) for p in points], SHORT, bounds=True),
+        'NORMAL': s.accessor([tuple(round(127 * c) for c in v) for v in normals], BYTE, normalized=True),
+        'TEXCOORD_0': s.accessor([tuple(round(65535 * c) for c in t) for t in uvs], USHORT, 'VEC2', normalized=True)},
+        'indices': s.accessor(corners, USHORT, 'SCALAR', padded=False)}]})
+    s.node(mesh=mesh, scale=[1 / 4000] * 3)
+    return s
+
+
+def instanced_on_gpu(n=6):
+    s = Scene()
+    s.use('EXT_mesh_gpu_instancing')
+    points, normals, _, corners = sheet(n)
+    mesh = s.add('meshes', {'primitives': [{'attributes': {'POSITION': s.accessor(points, bounds=True), 'NORMAL': s.accessor(normals)},
+                                            'indices': s.accessor(corners, USHORT, 'SCALAR', padded=False)}]})
+    places = s.accessor([(2.0 * i, 0.0, 0.0) for i in range(5)])
+    s.node(mesh=mesh, extensions={'EXT_mesh_gpu_instancing': {'attributes': {'TRANSLATION': places}}})
+    return s
+
+
+def write_all(folder):
+    """Every scene as a file; the names of the scenes."""
+    made = {'skinned.glb': skinned().glb(), 'morphing.glb': morphing().glb(), 'assembly.glb': assembly().glb(), 'embedded.gltf': assembly(3).gltf(),
+            'quantised.glb': quantised().glb(), 'instanced.glb': instanced_on_gpu().glb()}
+    text, files = textured('outside')
+    made['textured.gltf'] = text
+    for name, data in {**made, **files}.items():
+        (folder / name).write_bytes(data)
+    return list(made)
