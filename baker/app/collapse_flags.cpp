@@ -17,7 +17,7 @@ void CollapseFlags::add_to(CLI::App& command) {
     command
         .add_option(
             "--lock", locks,
-            "What never changes: boundary, features=ANGLE (degrees between triangles); may be repeated")
+            "What never changes: boundary, seams, features=ANGLE (degrees between triangles); may be repeated")
         ->type_name("WHAT")
         ->allow_extra_args(false);
 }
@@ -28,6 +28,8 @@ std::optional<std::string> CollapseFlags::set(bake::CollapseOptions& options) co
     for (const std::string& lock : locks) {
         if (lock == "boundary") {
             options.lock_boundary = true;
+        } else if (lock == "seams") {
+            options.lock_seams = true;
         } else if (lock.rfind("features=", 0) == 0) {
             char* end = nullptr;
             const double degrees = std::strtod(lock.c_str() + 9, &end);
@@ -35,7 +37,7 @@ std::optional<std::string> CollapseFlags::set(bake::CollapseOptions& options) co
                 return "--lock features=ANGLE wants degrees between 0 and 180";
             options.lock_features_degrees = degrees;
         } else {
-            return "--lock knows boundary and features=ANGLE, not " + lock;
+            return "--lock knows boundary, seams and features=ANGLE, not " + lock;
         }
     }
     return std::nullopt;

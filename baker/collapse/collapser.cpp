@@ -98,7 +98,11 @@ void Collapser::lock() {
     for (std::uint32_t v = 0; v < state_.mesh.vertex_count(); ++v) {
         if (state_.mesh.kind(v) == VertexKind::kDead) continue;
         bool lock = !state_.weights.empty() && std::isinf(state_.weights[v]);
-        if (state_.options.lock_boundary && state_.mesh.kind(v) != VertexKind::kInner) lock = true;
+        const Vertex& vertex = state_.mesh.vertex(v);
+        if (state_.options.lock_seams && (vertex.seam || vertex.junction)) lock = true;
+        if (state_.options.lock_boundary && vertex.kind != VertexKind::kInner &&
+            (!vertex.seam || vertex.open))
+            lock = true;
         if (state_.options.lock_features_degrees > 0 && !lock) {
             // Two triangles of the star that share an edge at v.
             const auto star = state_.mesh.star(v);

@@ -7,8 +7,10 @@
 namespace vsplit::bake {
 namespace {
 
-/// The edge's triangles do not run along it once in each direction.
-bool is_special(const StarMesh& mesh, std::uint32_t u, std::uint32_t v) {
+enum class EdgeKind : std::uint8_t { kInner, kSpecial, kBoundary };
+
+/// Special: its triangles do not run along it once in each direction, or differ in wedges or group.
+EdgeKind kind_of_edge(const StarMesh& mesh, std::uint32_t u, std::uint32_t v) {
     int out = 0, in = 0;
     bool seam = false;
     std::uint32_t first = kNoVertex;
@@ -34,7 +36,8 @@ bool is_special(const StarMesh& mesh, std::uint32_t u, std::uint32_t v) {
                 mesh.corners(first)[other_v] != mesh.corners(t)[c[next] == v ? next : last] ||
                 mesh.group(first) != mesh.group(t);
     }
-    return seam || out != 1 || in != 1;
+    if (out + in == 1) return EdgeKind::kBoundary;
+    return seam || out != 1 || in != 1 ? EdgeKind::kSpecial : EdgeKind::kInner;
 }
 
 }  // namespace
@@ -42,13 +45,28 @@ bool is_special(const StarMesh& mesh, std::uint32_t u, std::uint32_t v) {
 Fold fold_rule(const StarMesh& mesh, std::uint32_t u, std::uint32_t v) {
     const VertexKind ku = mesh.kind(u), kv = mesh.kind(v);
     if (ku == VertexKind::kFixed && kv == VertexKind::kFixed) return Fold::kNever;
-    // A curve's vertices fold along it only; an inner vertex has no special edge.
-    if (ku != VertexKind::kInner && kv != VertexKind::kInner && !is_special(mesh, u, v)) return Fold::kNever;
+    if (ku != VertexKind::kInner && kv != VertexKind::kInner) {
+        // A curve's vertices fold along it only; an inner vertex has no special edge.
+        const EdgeKind edge = kind_of_edge(mesh, u, v);
+        if (edge == EdgeKind::kInner) return Fold::kNever;
+        // From one boundary to another across the surface: would pinch it.
+        if (edge != EdgeKind::kBoundary && mesh.vertex(u).open && mesh.vertex(v).open) return Fold::kNever;
+    }
     if (ku == VertexKind::kFixed) return Fold::kIntoFirst;
     if (kv == VertexKind::kFixed) return Fold::kIntoSecond;
+    if (!mesh.has_wedges()) return Fold::kAnywhere;
+    const bool junction_u = mesh.vertex(u).junction, junction_v = mesh.vertex(v).junction;
+    if (junction_u && junction_v) {
+        // An open one stays open; else the one with the larger star stays.
+        if (mesh.vertex(u).open != mesh.vertex(v).open)
+            return mesh.vertex(u).open ? Fold::kIntoFirst : Fold::kIntoSecond;
+        return mesh.star(u).size() >= mesh.star(v).size() ? Fold::kIntoFirst : Fold::kIntoSecond;
+    }
+    if (junction_u) return Fold::kIntoFirst;
+    if (junction_v) return Fold::kIntoSecond;
     // Onto a seam, but not with it: the other side's attributes belong to the place where it is.
-    if (ku != VertexKind::kInner && mesh.vertex(u).seam && kv == VertexKind::kInner) return Fold::kIntoFirst;
-    if (kv != VertexKind::kInner && mesh.vertex(v).seam && ku == VertexKind::kInner) return Fold::kIntoSecond;
+    if (mesh.vertex(u).seam && kv == VertexKind::kInner) return Fold::kIntoFirst;
+    if (mesh.vertex(v).seam && ku == VertexKind::kInner) return Fold::kIntoSecond;
     return Fold::kAnywhere;
 }
 

@@ -158,11 +158,8 @@ Region::Outcome Region::attempt(std::uint32_t u, const Option& option, Bucket bu
         state_.paper ? 0 : state_.options.deviation_limit * d * d * d * state_.mean_star * weight;
     cost = float(std::max(option.candidate.cost, limit));
     if (mesh_.has_wedges()) {
-        const std::uint32_t parent = parent_of(star_, option);
-        cost = kNeverCost;
-        if (!wedge_star_.gather(mesh_, star_, parent != u, parent == u)) return Outcome::kWaits;
-        cost = float(std::max(option.candidate.cost, limit) +
-                     weight * attribute_cost(mesh_, star_, wedge_star_, *state_.wedges, place));
+        wedge_star_.gather(mesh_, star_, parent_of(star_, option));
+        cost += float(weight * attribute_cost(mesh_, star_, wedge_star_, *state_.wedges, place));
     }
     if (bucket_of(cost) > bucket) return Outcome::kWaits;
     if (!is_whole()) {
@@ -187,35 +184,34 @@ std::uint32_t Region::parent_of(const EdgeStar& star, const Option& option) cons
     return mesh_.star(star.v).size() > mesh_.star(star.u).size() ? star.v : star.u;
 }
 
-void Region::fold_wedges(const EdgeStar& star, std::uint32_t parent, Double3 place) {
-    const bool swapped = parent == star.u;  // pairs go from the first end to the second
-    wedge_record_.add(wedge_star_.pairs, swapped, wedge_star_.moved[swapped ? 0 : 1], *state_.wedges);
+void Region::fold_wedges(const EdgeStar& star, Double3 place) {
+    wedge_record_.add(wedge_star_, *state_.wedges);
     // All are mixed from what was there before any changes.
     const std::size_t stride = state_.wedges->stride();
     thread_local std::vector<float> mixed;
     mixed.resize(stride * wedge_star_.pairs.size());
     for (std::size_t i = 0; i < wedge_star_.pairs.size(); ++i)
-        mix_at(mesh_, star, wedge_star_.pairs[i], *state_.wedges, place,
+        mix_at(mesh_, star, wedge_star_, wedge_star_.pairs[i], *state_.wedges, place,
                std::span(mixed).subspan(stride * i, stride));
     for (std::size_t i = 0; i < wedge_star_.pairs.size(); ++i) {
-        WedgePair& pair = wedge_star_.pairs[i];
-        if (swapped) std::swap(pair.child, pair.parent);
         const auto from = std::span(mixed).subspan(stride * i, stride);
-        std::copy(from.begin(), from.end(), state_.wedges->of(pair.parent).begin());
+        std::copy(from.begin(), from.end(), state_.wedges->of(wedge_star_.pairs[i].parent).begin());
     }
 }
 
 void Region::apply(const EdgeStar& star, const Option& option, Float3 place, const Deviation& deviation) {
     const std::uint32_t parent = parent_of(star, option), child = star.u + star.v - parent;
-    if (mesh_.has_wedges()) fold_wedges(star, parent, mesh_.work(place));
+    if (mesh_.has_wedges()) fold_wedges(star, mesh_.work(place));
     const TrianglePart<double> part = update_ring(mesh_, star);
     const std::size_t before = record_.removed.size();
     const Float3 parent_position = mesh_.raw_position(parent);
     const float parent_weight = state_.weights.empty() ? 1 : state_.weights[parent];
     const std::span<const WedgePair> pairs =
         mesh_.has_wedges() ? wedge_star_.pairs : std::span<const WedgePair>{};
-    const std::size_t taken = mesh_.fold(child, parent, pairs, record_.corners_changed, record_.removed);
+    const std::size_t taken = mesh_.fold(child, parent, pairs, record_.corners_changed, record_.removed,
+                                         wedge_record_.corner_wedges);
     room_ -= std::min(room_, taken);
+    if (mesh_.has_wedges()) wedge_record_.close();
     record_.add(child, parent, parent_position, parent_weight, float(deviation.largest));
     ++lost_vertices_;
     lose_of(state_.components.of(parent), std::uint32_t(record_.removed.size() - before));
@@ -226,7 +222,11 @@ void Region::apply(const EdgeStar& star, const Option& option, Float3 place, con
     history.deviation = deviation.at_place;
     history.witness = deviation.witness;
     Vertex& shape = mesh_.vertex(parent);
-    shape.folded |= mesh_.vertex(child).folded;
+    const Vertex& gone = mesh_.vertex(child);
+    shape.folded |= gone.folded;
+    shape.seam |= gone.seam;
+    shape.open |= gone.open;
+    shape.junction |= gone.junction;
     shape.weight = 0.5f * (shape.weight + mesh_.vertex(child).weight);
     if (!state_.weights.empty())
         state_.weights[parent] = 0.5f * (state_.weights[parent] + state_.weights[child]);
@@ -379,7 +379,7 @@ void Region::process_component(std::uint32_t component, Bucket bucket) {
     lost_vertices_ += std::uint32_t(vertices.size());
     lost_triangles_ += std::uint32_t(triangles.size());
     record_.add_vanished(vertices, float(state_.components.reach(component)));
-    if (mesh_.has_wedges()) wedge_record_.add_vanished();
+    if (mesh_.has_wedges()) wedge_record_.close();
     state_.components.vanish(component);
     ++vanished_;
 }

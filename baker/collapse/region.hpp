@@ -142,7 +142,7 @@ class Region {
     std::uint32_t parent_of(const EdgeStar& star, const Option& option) const;
     void apply(const EdgeStar& star, const Option& option, Float3 place, const Deviation& deviation);
     /// After a collapse: prices the new vertex's edges, and offers them to those neighbours who own them.
-    void fold_wedges(const EdgeStar& star, std::uint32_t parent, Double3 place);
+    void fold_wedges(const EdgeStar& star, Double3 place);
     void reprice(std::uint32_t parent, std::uint32_t child, Bucket now);
     void put_off(std::uint32_t u, Bucket bucket);
     void lose_of(std::uint32_t component, std::uint32_t triangles);

@@ -118,6 +118,11 @@ StarMesh::StarMesh(const Mesh& mesh, const std::vector<Triangle>& corners,
 }
 
 void StarMesh::classify() {
+    // A curve: two special edges of one kind.
+    const auto is_alike = [](std::size_t special, const Neighbour* const(&curve)[2]) {
+        return special == 2 && curve[0]->out + curve[0]->in == curve[1]->out + curve[1]->in &&
+               curve[0]->seam == curve[1]->seam;
+    };
     tbb::parallel_for(
         tbb::blocked_range<std::uint32_t>(0, vertex_count(), 4096),
         [&](const tbb::blocked_range<std::uint32_t>& range) {
@@ -136,12 +141,19 @@ void StarMesh::classify() {
                         if (special < 2) curve[special] = &n;
                         ++special;
                     }
-                if (special != 0 && special != 2) continue;
-                if (special == 2) {
-                    const int a = curve[0]->out + curve[0]->in, b = curve[1]->out + curve[1]->in;
-                    if (a != b || curve[0]->seam != curve[1]->seam) continue;
-                    vertices_[v].seam = curve[0]->seam;
+                const auto is_boundary = [](const Neighbour& n) { return n.out + n.in == 1; };
+                const auto boundaries = std::count_if(ring.begin(), ring.end(), is_boundary);
+                vertices_[v].open = boundaries != 0;
+                if (special != 0 && !is_alike(special, curve)) {
+                    // Several seams, or seams and a boundary, of an orderly fan.
+                    const bool orderly = std::all_of(ring.begin(), ring.end(), [&](const Neighbour& n) {
+                        return is_boundary(n) || (n.out == 1 && n.in == 1);
+                    });
+                    if (!has_wedges() || !orderly || (boundaries != 0 && boundaries != 2)) continue;
+                    vertices_[v].junction = 1;
                 }
+                vertices_[v].seam =
+                    std::any_of(ring.begin(), ring.end(), [](const Neighbour& n) { return n.seam; });
                 // The link must hang together: otherwise several fans meet in this one point.
                 roots.resize(ring.size());
                 std::iota(roots.begin(), roots.end(), 0u);
@@ -175,7 +187,8 @@ void StarMesh::classify() {
 }
 
 std::size_t StarMesh::fold(std::uint32_t child, std::uint32_t parent, std::span<const WedgePair> pairs,
-                           std::vector<std::uint32_t>& corners_changed, std::vector<std::uint32_t>& removed) {
+                           std::vector<std::uint32_t>& corners_changed, std::vector<std::uint32_t>& removed,
+                           std::vector<std::uint32_t>& corner_wedges) {
     const std::size_t first_removed = removed.size();
     const auto has = [&](std::uint32_t t, std::uint32_t v) {
         return triangles_[t][0] == v || triangles_[t][1] == v || triangles_[t][2] == v;
@@ -210,6 +223,8 @@ std::size_t StarMesh::fold(std::uint32_t child, std::uint32_t parent, std::span<
         const std::uint32_t k = triangles_[t][0] == child ? 0 : triangles_[t][1] == child ? 1 : 2;
         triangles_[t][k] = parent;
         corners_changed.push_back(3 * t + k);
+        if (corners_.empty()) continue;
+        corner_wedges.push_back(corners_[t][k]);
         for (const WedgePair& pair : pairs)
             if (corners_[t][k] == pair.child) {
                 corners_[t][k] = pair.parent;

@@ -107,9 +107,11 @@ class StarMesh {
     /// May run at once for edges whose stars share no vertex, if there is room() for all of them. Returns how
     /// many entries of the arena it took. live_triangles() and live_vertices() stay as they were until
     /// lose().
-    /// Wedges of the child's other triangles become what `pairs` says.
+    /// Wedges of the child's other triangles become what `pairs` says; what they were is appended to
+    /// `corner_wedges`.
     std::size_t fold(std::uint32_t child, std::uint32_t parent, std::span<const WedgePair> pairs,
-                     std::vector<std::uint32_t>& corners_changed, std::vector<std::uint32_t>& removed);
+                     std::vector<std::uint32_t>& corners_changed, std::vector<std::uint32_t>& removed,
+                     std::vector<std::uint32_t>& corner_wedges);
     void lose(std::uint32_t vertices, std::uint32_t triangles) {
         live_vertices_ -= vertices;
         live_triangles_ -= triangles;

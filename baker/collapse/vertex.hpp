@@ -31,9 +31,12 @@ struct alignas(64) Vertex {
     float area[3] = {};     ///< Sum over triangles of the area vector.
     float size = 0;         ///< Sum over triangles of the area.
     std::uint32_t star_begin = 0;  ///< In the arena of triangle lists.
-    std::uint32_t star_size : 28 = 0;
-    std::uint32_t seam : 1 = 0;    ///< Of a curve: where wedges or groups of triangles meet.
-    std::uint32_t folded : 1 = 0;  ///< Near an edge whose triangles lay back on each other in the input.
+    std::uint32_t star_size : 26 = 0;
+    std::uint32_t seam : 1 = 0;      ///< Of a curve: where wedges or groups of triangles meet.
+    std::uint32_t junction : 1 = 0;  ///< Of a curve: where seams end, meet, or reach a boundary. Stays where
+                                     ///< it is, but for another junction.
+    std::uint32_t open : 1 = 0;      ///< On a boundary.
+    std::uint32_t folded : 1 = 0;    ///< Near an edge whose triangles lay back on each other in the input.
     VertexKind kind : 2 = VertexKind::kFixed;
 };
 static_assert(sizeof(Vertex) == 64 && offsetof(Vertex, quadric) == 16);

@@ -50,14 +50,11 @@ class Replay {
         if (mesh_.has_groups()) out.groups.push_back(mesh_.group(t));
     }
 
-    /// A corner goes back to the wedge that became the one it has.
-    void give_back(std::uint32_t corner, std::span<const WedgePair> pairs) {
+    /// A corner goes back to the wedge it had.
+    void give_back(std::uint32_t corner, std::uint32_t before) {
         std::uint32_t& wedge = corners_[corner / 3][corner % 3];
-        for (const WedgePair& pair : pairs)
-            if (pair.parent == wedge) {
-                wedge = pair.child;
-                break;
-            }
+        if (wedge == before) return;  // transferred
+        wedge = before;
         out.corner_changes.push_back({3 * triangle_births_[corner / 3] + corner % 3, births_[wedge]});
     }
 
@@ -137,30 +134,35 @@ class Replay {
 
 }  // namespace
 
-void WedgeRecord::add(const std::vector<WedgePair>& step_pairs, bool swapped,
-                      const std::vector<std::uint32_t>& step_moved, const WedgeValues& values) {
-    for (const WedgePair& pair : step_pairs)
-        pairs.push_back(swapped ? WedgePair{pair.parent, pair.child} : pair);
-    for (const std::uint32_t wedge : step_moved) {
+void WedgeRecord::add(const WedgeStar& star, const WedgeValues& values) {
+    pairs.insert(pairs.end(), star.pairs.begin(), star.pairs.end());
+    const auto keep = [&](std::uint32_t wedge) {
         moved.push_back(wedge);
         const auto old = values.of(wedge);
         moved_values.insert(moved_values.end(), old.begin(), old.end());
-    }
-    add_vanished();
+    };
+    for (const std::uint32_t wedge : star.moved) keep(wedge);
+    own_ = std::uint32_t(moved.size());
+    for (const std::uint32_t wedge : star.transferred) keep(wedge);
 }
 
 void WedgeRecord::append(const WedgeRecord& other, std::size_t begin, std::size_t end, std::uint32_t stride) {
     if (begin == end) return;
-    const Ends from = begin == 0 ? Ends{0, 0} : other.ends[begin - 1], to = other.ends[end - 1];
-    const auto pairs_now = std::uint32_t(pairs.size()), moved_now = std::uint32_t(moved.size());
-    for (std::size_t i = begin; i < end; ++i)
-        ends.push_back(
-            {other.ends[i].pairs - from.pairs + pairs_now, other.ends[i].moved - from.moved + moved_now});
+    const Ends from = begin == 0 ? Ends{} : other.ends[begin - 1], to = other.ends[end - 1];
+    const Ends now{std::uint32_t(pairs.size()), 0, std::uint32_t(moved.size()),
+                   std::uint32_t(corner_wedges.size())};
+    for (std::size_t i = begin; i < end; ++i) {
+        const Ends& e = other.ends[i];
+        ends.push_back({e.pairs - from.pairs + now.pairs, e.own - from.moved + now.moved,
+                        e.moved - from.moved + now.moved, e.corners - from.corners + now.corners});
+    }
     pairs.insert(pairs.end(), other.pairs.begin() + from.pairs, other.pairs.begin() + to.pairs);
     moved.insert(moved.end(), other.moved.begin() + from.moved, other.moved.begin() + to.moved);
     moved_values.insert(moved_values.end(),
                         other.moved_values.begin() + std::ptrdiff_t(std::size_t{stride} * from.moved),
                         other.moved_values.begin() + std::ptrdiff_t(std::size_t{stride} * to.moved));
+    corner_wedges.insert(corner_wedges.end(), other.corner_wedges.begin() + from.corners,
+                         other.corner_wedges.begin() + to.corners);
 }
 
 ProgressiveMesh finish_with_wedges(const Record& record, const WedgeRecord& wedges, const StarMesh& mesh,
@@ -178,7 +180,7 @@ ProgressiveMesh finish_with_wedges(const Record& record, const WedgeRecord& wedg
         const Record::Step &step = record.steps()[i],
                            before = i == 0 ? Record::Step{} : record.steps()[i - 1];
         const WedgeRecord::Ends end = wedges.ends[i],
-                                begin = i == 0 ? WedgeRecord::Ends{0, 0} : wedges.ends[i - 1];
+                                begin = i == 0 ? WedgeRecord::Ends{} : wedges.ends[i - 1];
         if (step.child != kNoVertex) {
             const auto pairs = std::span(wedges.pairs).subspan(begin.pairs, end.pairs - begin.pairs);
             replay.place(step.parent, step.parent_position, record.parent_weight(i));
@@ -193,14 +195,16 @@ ProgressiveMesh finish_with_wedges(const Record& record, const WedgeRecord& wedg
                             values.of(pair.child));
             for (std::uint32_t j = begin.moved; j < end.moved; ++j) {
                 const auto old = std::span(wedges.moved_values).subspan(stride * j, stride);
+                const std::uint32_t point = j < end.own ? step.parent : step.child;
                 if (was_there[j - begin.moved])
-                    replay.move(wedges.moved[j], step.parent, old);
+                    replay.move(wedges.moved[j], point, old);
                 else
-                    replay.bear(wedges.moved[j], step.parent, kNoVertex, old);
+                    replay.bear(wedges.moved[j], point, kNoVertex, old);
             }
             const std::size_t first = replay.out.corner_changes.size();
             for (std::uint32_t j = before.corners_end; j < step.corners_end; ++j)
-                replay.give_back(record.corners_changed[j], pairs);
+                replay.give_back(record.corners_changed[j],
+                                 wedges.corner_wedges[begin.corners + j - before.corners_end]);
             std::sort(replay.out.corner_changes.begin() + std::ptrdiff_t(first),
                       replay.out.corner_changes.end(),
                       [](const CornerChange& a, const CornerChange& b) { return a.corner < b.corner; });

@@ -249,42 +249,45 @@ PointMesh points_of(const Mesh& mesh, std::span<const std::uint32_t> part_of) {
     return out;
 }
 
-bool WedgeStar::gather(const StarMesh& mesh, const EdgeStar& star, bool first_goes, bool second_goes) {
+void WedgeStar::gather(const StarMesh& mesh, const EdgeStar& star, std::uint32_t stays) {
+    parent = stays;
+    const std::uint32_t child = star.u + star.v - parent;
     pairs.clear();
-    const std::uint32_t ends[2] = {star.u, star.v};
-    for (std::size_t e = 0; e < 2; ++e) {
-        moved[e].clear();
-        for (const std::uint32_t t : mesh.star(ends[e])) {
+    moved.clear();
+    transferred.clear();
+    const auto wedges_of = [&](std::uint32_t v, std::vector<std::uint32_t>& out) {
+        for (const std::uint32_t t : mesh.star(v)) {
             const Triangle& c = mesh.triangle(t);
-            const std::size_t k = c[0] == ends[e] ? 0 : c[1] == ends[e] ? 1 : 2;
-            const std::uint32_t wedge = mesh.corners(t)[k];
-            if (std::find(moved[e].begin(), moved[e].end(), wedge) == moved[e].end())
-                moved[e].push_back(wedge);
-            if (e == 1) continue;
-            for (std::size_t j = 0; j < 3; ++j)
-                if (c[j] == star.v) {
-                    const WedgePair pair{wedge, mesh.corners(t)[j]};
-                    if (std::none_of(pairs.begin(), pairs.end(), [&](const WedgePair& p) {
-                            return p.child == pair.child && p.parent == pair.parent;
-                        }))
-                        pairs.push_back(pair);
-                }
+            const std::uint32_t wedge = mesh.corners(t)[c[0] == v ? 0 : c[1] == v ? 1 : 2];
+            if (std::find(out.begin(), out.end(), wedge) == out.end()) out.push_back(wedge);
         }
-    }
-    // Each wedge that may go has exactly one partner.
-    const auto partners = [&](std::uint32_t wedge, auto member) {
-        return std::count_if(pairs.begin(), pairs.end(),
-                             [&](const WedgePair& p) { return p.*member == wedge; });
     };
-    for (const std::uint32_t wedge : moved[0])
-        if (first_goes && partners(wedge, &WedgePair::child) != 1) return false;
-    for (const std::uint32_t wedge : moved[1])
-        if (second_goes && partners(wedge, &WedgePair::parent) != 1) return false;
-    // New values are mixed from the two ends': one partner each, both ways.
-    for (const WedgePair& pair : pairs)
-        if (partners(pair.child, &WedgePair::child) != 1 || partners(pair.parent, &WedgePair::parent) != 1)
-            return false;
-    return true;
+    wedges_of(parent, moved);
+    wedges_of(child, transferred);
+    for (const std::uint32_t t : star.opposite_triangles) {
+        const Triangle& c = mesh.triangle(t);
+        WedgePair pair{};
+        for (std::size_t k = 0; k < 3; ++k) {
+            if (c[k] == child) pair.child = mesh.corners(t)[k];
+            if (c[k] == parent) pair.parent = mesh.corners(t)[k];
+        }
+        const auto same = std::find_if(pairs.begin(), pairs.end(), [&](const WedgePair& p) {
+            return p.child == pair.child && p.parent == pair.parent;
+        });
+        if (same == pairs.end()) pairs.push_back(pair);
+    }
+    // Two partners are none.
+    std::vector<std::uint32_t> torn;
+    for (std::size_t i = 0; i < pairs.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j)
+            if (pairs[i].child == pairs[j].child) torn.push_back(pairs[i].child);
+    const auto is_torn = [&](std::uint32_t w) {
+        return std::find(torn.begin(), torn.end(), w) != torn.end();
+    };
+    std::erase_if(pairs, [&](const WedgePair& p) { return is_torn(p.child); });
+    std::erase_if(transferred, [&](std::uint32_t w) {
+        return std::any_of(pairs.begin(), pairs.end(), [&](const WedgePair& p) { return p.child == w; });
+    });
 }
 
 namespace {
@@ -325,30 +328,34 @@ Triangle corners_from(const StarMesh& mesh, std::uint32_t t, std::uint32_t verte
 
 }  // namespace
 
-void mix_at(const StarMesh& mesh, const EdgeStar& star, const WedgePair& pair, const WedgeValues& values,
-            Double3 place, std::span<float> out) {
+void mix_at(const StarMesh& mesh, const EdgeStar& star, const WedgeStar& wedges, const WedgePair& pair,
+            const WedgeValues& values, Double3 place, std::span<float> out) {
     const auto copy = [&](std::uint32_t wedge) {
         const auto from = values.of(wedge);
         std::copy(from.begin(), from.end(), out.begin());
     };
+    const bool first_stays = wedges.parent == star.u;
     const auto is_at = [&](Double3 p) { return p.x == place.x && p.y == place.y && p.z == place.z; };
-    if (is_at(star.pu)) return copy(pair.child);
-    if (is_at(star.pv)) return copy(pair.parent);
+    if (is_at(first_stays ? star.pu : star.pv)) return copy(pair.parent);
+    if (is_at(first_stays ? star.pv : star.pu)) return copy(pair.child);
+    const std::uint32_t at_first = first_stays ? pair.parent : pair.child,
+                        at_second = first_stays ? pair.child : pair.parent;
     Nearest nearest;
     for (std::size_t i = 0; i < star.size; ++i) {
         const bool first = i < star.first_size;
         const Triangle corners = corners_from(mesh, star.triangles[i], first ? star.u : star.v);
-        if (corners[0] != (first ? pair.child : pair.parent)) continue;
+        if (corners[0] != (first ? at_first : at_second)) continue;
         const EdgeStar::Wing wing = star.wing(i);
         nearest.offer(place, first ? star.pu : star.pv, wing.pa, wing.pb, corners);
     }
     for (std::size_t i = 0; i < star.opposite.size(); ++i) {
         const Triangle corners = corners_from(mesh, star.opposite_triangles[i], star.u);
-        if (corners[0] != pair.child) continue;
+        if (corners[0] != at_first) continue;
         const bool forward = star.forward[i] != 0;
         nearest.offer(place, star.pu, forward ? star.pv : star.opposite_places[i],
                       forward ? star.opposite_places[i] : star.pv, corners);
     }
+    if (std::isinf(nearest.distance2)) return copy(pair.parent);
     values.mix({{values.of(nearest.corners[0]), values.of(nearest.corners[1]), values.of(nearest.corners[2])},
                 nearest.shares},
                out);
@@ -358,31 +365,38 @@ double attribute_cost(const StarMesh& mesh, const EdgeStar& star, const WedgeSta
                       const WedgeValues& values, Double3 place) {
     const double area = double(mesh.vertex(star.u).size) + double(mesh.vertex(star.v).size);
     const double extent = std::sqrt(area / 6);
+    const bool first_stays = wedges.parent == star.u;
+    const Double3 parent_place = first_stays ? star.pu : star.pv,
+                  child_place = first_stays ? star.pv : star.pu;
+    double most = 0;
+    // What `own` had at `p`, against what the new triangles have that keep one of two wedges at their tip,
+    // whose values become `tip`.
+    const auto compare = [&](std::uint32_t own, Double3 p, std::uint32_t a, std::uint32_t b,
+                             std::span<const float> tip) {
+        Nearest nearest;
+        for (std::size_t i = 0; i < star.size; ++i) {
+            const Triangle corners =
+                corners_from(mesh, star.triangles[i], i < star.first_size ? star.u : star.v);
+            if (corners[0] != a && corners[0] != b) continue;
+            const EdgeStar::Wing wing = star.wing(i);
+            nearest.offer(p, place, wing.pa, wing.pb, corners);
+        }
+        if (std::isinf(nearest.distance2)) return;  // This side of the seam goes.
+        most = std::max(
+            most, values.apart2(
+                      values.of(own),
+                      {{tip, values.of(nearest.corners[1]), values.of(nearest.corners[2])}, nearest.shares},
+                      extent, mesh.scale()));
+    };
     thread_local std::vector<float> mixed;
     mixed.resize(values.stride());
-    double most = 0;
     for (const WedgePair& pair : wedges.pairs) {
-        mix_at(mesh, star, pair, values, place, mixed);
-        for (const bool second : {false, true}) {
-            // The nearest point of the new triangles on this side of seams, and the values there.
-            const std::uint32_t own = second ? pair.parent : pair.child;
-            const Double3 p = second ? star.pv : star.pu;
-            Nearest nearest;
-            for (std::size_t i = 0; i < star.size; ++i) {
-                const Triangle corners =
-                    corners_from(mesh, star.triangles[i], i < star.first_size ? star.u : star.v);
-                if (corners[0] != pair.child && corners[0] != pair.parent) continue;
-                const EdgeStar::Wing wing = star.wing(i);
-                nearest.offer(p, place, wing.pa, wing.pb, corners);
-            }
-            if (std::isinf(nearest.distance2)) continue;  // This side of the seam goes.
-            most = std::max(
-                most, values.apart2(values.of(own),
-                                    {{mixed, values.of(nearest.corners[1]), values.of(nearest.corners[2])},
-                                     nearest.shares},
-                                    extent, mesh.scale()));
-        }
+        mix_at(mesh, star, wedges, pair, values, place, mixed);
+        compare(pair.child, child_place, pair.child, pair.parent, mixed);
+        compare(pair.parent, parent_place, pair.child, pair.parent, mixed);
     }
+    for (const std::uint32_t wedge : wedges.transferred)
+        compare(wedge, child_place, wedge, wedge, values.of(wedge));
     return std::pow(area, 1.5) / std::sqrt(6.0) * most;
 }
 

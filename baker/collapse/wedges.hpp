@@ -72,18 +72,21 @@ PointMesh points_of(const Mesh& mesh, std::span<const std::uint32_t> part_of);
 
 /// The wedges of an edge that is about to collapse.
 struct WedgeStar {
-    std::vector<WedgePair> pairs;  ///< Of the ends' wedges on the edge's triangles, first and second end.
-    std::vector<std::uint32_t> moved[2];  ///< All wedges of the first end, of the second.
+    std::vector<WedgePair> pairs;            ///< Those that become one.
+    std::vector<std::uint32_t> moved;        ///< All wedges of the vertex that stays.
+    std::vector<std::uint32_t> transferred;  ///< Wedges of the one that goes without a partner: they go over
+                                             ///< as they are.
+    std::uint32_t parent = 0;                ///< Which end stays.
 
-    /// False if the ends' wedges do not go together: one of the end that goes (of either, if any may) has no
-    /// partner, or two.
-    bool gather(const StarMesh& mesh, const EdgeStar& star, bool first_goes, bool second_goes);
+    /// Partners are named by the edge's own triangles. A wedge that goes and has two (a seam ends there) is
+    /// transferred; a wedge that stays may have several.
+    void gather(const StarMesh& mesh, const EdgeStar& star, std::uint32_t parent);
 };
 
 /// The values that a pair's wedge has at `place` once it is all that is left of the two, into `out`: what the
-/// nearest of the old triangles on its side of seams has there.
-void mix_at(const StarMesh& mesh, const EdgeStar& star, const WedgePair& pair, const WedgeValues& values,
-            Double3 place, std::span<float> out);
+/// nearest of the old triangles on its side of seams has there; its own if it stays where it is.
+void mix_at(const StarMesh& mesh, const EdgeStar& star, const WedgeStar& wedges, const WedgePair& pair,
+            const WedgeValues& values, Double3 place, std::span<float> out);
 
 /// What the collapse does to attributes, as a cost: the triangles' area^1.5 around the edge times the squared
 /// length that WedgeValues::apart2 says, of both ends' old values against the new triangles'.

@@ -46,6 +46,7 @@ struct CollapseOptions {
     Placement placement = Placement::kOptimal;
 
     bool lock_boundary = false;  ///< Vertices on boundary and non-manifold edges never move nor go.
+    bool lock_seams = false;     ///< Nor those where attributes or groups differ across an edge.
     double lock_features_degrees =
         0;  ///< If > 0: nor do those on edges whose dihedral angle departs from flat by more.
 
