@@ -26,6 +26,7 @@ struct BakeCommand {
     std::string cost = "quadric", placement = "optimal";
     std::vector<std::string> locks;
     WriteOptions write;
+    bool lossless = false;
 
     int run() const;
     /// The mesh to bake; if the input is a cloud of points, the surface made of it, told in `surface`.
@@ -101,7 +102,9 @@ int BakeCommand::run() const {
     if (!result) return fail_input(input.path, result.error());
     const std::size_t triangles = file->mesh.triangles.size();
     file->mesh = {};
-    auto bytes = write_progressive_mesh(result->mesh, write);
+    WriteOptions rounding = write;
+    if (lossless) rounding.position_bits = 0;
+    auto bytes = write_progressive_mesh(result->mesh, rounding);
     if (!bytes) return fail_output(output.path, bytes.error());
     if (const int failed = write_output(output, *bytes)) return failed;
 
@@ -187,6 +190,12 @@ void add_bake(CLI::App& app, int& exit) {
            "What never changes: boundary, features=ANGLE (degrees between triangles); may be repeated")
         ->type_name("WHAT")
         ->allow_extra_args(false);
+    auto* bits = sub->add_option("--position-bits", command->write.position_bits,
+                                 "Places are rounded to this many bits of the longest side")
+                     ->check(CLI::Range(2, 20))
+                     ->capture_default_str();
+    sub->add_flag("--lossless", command->lossless, "Keep every float of places and attributes")
+        ->excludes(bits);
     sub->add_option("--block-bytes", command->write.block_bytes, "Size that blocks of splits aim at")
         ->check(CLI::Range(1024, 1 << 24))
         ->capture_default_str();

@@ -21,12 +21,14 @@ Json to_json(const FileInfo& info) {
     for (const BlockInfo& b : info.blocks)
         blocks.push_back({{"offset", b.offset},
                           {"bytes", b.bytes},
-                          {"raw_bytes", b.raw_bytes},
                           {"checksum", fmt::format("{:016x}", b.checksum)},
                           {"splits", b.splits_end},
                           {"vertices", b.vertices_end},
                           {"triangles", b.triangles_end},
                           {"error", b.error}});
+    Json attributes = Json::array();
+    for (const AttributeInfo& a : info.attributes)
+        attributes.push_back({{"name", a.name}, {"components", a.components}, {"exact", a.exact}});
     const auto point = [](const Float3& p) { return Json::array({p.x, p.y, p.z}); };
     return {{"version", info.version},
             {"bytes", info.file_bytes},
@@ -34,6 +36,10 @@ Json to_json(const FileInfo& info) {
             {"triangles", info.triangles},
             {"splits", info.splits},
             {"weights", info.has_weights},
+            {"lossless", info.lossless},
+            {"position_bits", info.position_bits},
+            {"position_step", info.position_step},
+            {"attributes", attributes},
             {"bounds", {{"min", point(info.bounds_min)}, {"max", point(info.bounds_max)}}},
             {"base",
              {{"offset", info.base_offset},
@@ -67,6 +73,12 @@ int InfoCommand::run() const {
     say(common, fmt::format("  {} triangles, {} vertices, {} splits{}", with_commas(info->triangles),
                             with_commas(info->vertices), with_commas(info->splits),
                             info->has_weights ? ", painted weights" : ""));
+    say(common, info->lossless ? std::string("  lossless")
+                               : fmt::format("  places on a lattice of {} bits, step {}", info->position_bits,
+                                             short_number(info->position_step)));
+    for (const AttributeInfo& a : info->attributes)
+        say(common,
+            fmt::format("  attribute {}: {} components{}", a.name, a.components, a.exact ? ", exact" : ""));
     say(common, fmt::format("  bounds ({}, {}, {}) to ({}, {}, {})", info->bounds_min.x, info->bounds_min.y,
                             info->bounds_min.z, info->bounds_max.x, info->bounds_max.y, info->bounds_max.z));
     say(common, fmt::format("  {:>5}  {:>11} {:>9}  {:>11} {:>11}  {:>9}", "block", "offset", "bytes",
