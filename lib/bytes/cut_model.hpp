@@ -25,6 +25,13 @@ struct Cut {
     bool last_wing = true;   ///< There is a new triangle (child, ring[begin + length], parent).
 };
 
+/// log2 of small numbers, in 1/256.
+inline constexpr std::array<std::int16_t, Star::kLargestFan + 1> kSmallLogs = [] {
+    std::array<std::int16_t, Star::kLargestFan + 1> table{};
+    for (std::size_t i = 0; i < table.size(); ++i) table[i] = static_cast<std::int16_t>(log2_fixed(i));
+    return table;
+}();
+
 class CutModel {
   public:
     CutModel();
@@ -52,9 +59,12 @@ class CutModel {
         }
     };
 
-    static std::size_t share_class(std::int32_t part, std::int32_t whole) {
-        return std::min<std::size_t>(
-            static_cast<std::size_t>(part) * kShares / static_cast<std::size_t>(whole), kShares - 1);
+    static std::int32_t share_scale(std::int32_t whole) {
+        return static_cast<std::int32_t>(kShares << 16) / std::max(whole, 1);
+    }
+    static std::uint8_t share_class(std::int32_t part, std::int32_t scale) {
+        return static_cast<std::uint8_t>(
+            std::min<std::int64_t>((std::int64_t{part} * scale) >> 16, kShares - 1));
     }
     void classify(const LiveStars& mesh, const Star& star);
     void learn(const Star& star, const Cut& cut);
@@ -65,6 +75,7 @@ class CutModel {
     /// How often a run of each length had each share of the fan's angle.
     struct Shares {
         std::array<std::uint16_t, kShares> count;
+        std::array<std::int16_t, kShares> log{};  ///< log2 of the counts, in 1/256.
         std::uint32_t sum = kShares;
         Shares() { count.fill(1); }
     };
@@ -74,9 +85,10 @@ class CutModel {
     std::array<std::uint32_t, Star::kLargestFan + 1> edge_kind_, chord_kind_;
     std::array<std::int32_t, 2 * Star::kLargestFan + 1>
         angle_;  // sums along the fan, twice round it if closed
-    std::vector<std::uint32_t> weights_;
-    std::vector<std::int32_t> scores_;
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> runs_;
+    static constexpr std::size_t kMostRuns = Star::kLargestFan * Star::kLargestFan;
+    std::array<std::uint32_t, kMostRuns> weights_;
+    std::array<std::int32_t, kMostRuns> scores_;
+    std::array<std::pair<std::uint8_t, std::uint8_t>, kMostRuns> runs_;
 };
 
 template <class Coder>
@@ -92,62 +104,55 @@ Cut CutModel::code(Coder& coder, const LiveStars& mesh, const Star& star, const 
         }
     }
     // Sums of the roles' likelihoods along the ring; what the child alone has lies strictly inside the run.
-    std::array<std::int32_t, 2 * Star::kLargestFan + 2> inside;
+    const std::uint32_t ring = star.ring_size(), span = star.closed ? 2 * n : n + 1;
+    std::array<std::int32_t, 2 * Star::kLargestFan + 2> inside, wing;
     inside[0] = 0;
-    const std::uint32_t span = star.closed ? 2 * n : n + 1;
     for (std::uint32_t i = 0; i < span; ++i) {
-        const std::uint32_t j = star.closed && i >= n ? i - n : i;
-        inside[i + 1] = inside[i] + kWeighEdge * by_edge_[edge_kind_[j]].child +
-                        kWeighChord * by_chord_[chord_kind_[j]].child;
+        if (i >= ring) {
+            wing[i] = wing[i - ring];
+            inside[i + 1] = inside[i] + (inside[i - ring + 1] - inside[i - ring]);
+            continue;
+        }
+        const Role &edge = by_edge_[edge_kind_[i]], &chord = by_chord_[chord_kind_[i]];
+        wing[i] = kWeighEdge * edge.wing + kWeighChord * chord.wing;
+        inside[i + 1] = inside[i] + kWeighEdge * edge.child + kWeighChord * chord.child;
     }
-    const auto wing = [&](std::uint32_t i) {
-        const std::uint32_t j = star.closed && i >= n ? i - n : i;
-        return kWeighEdge * by_edge_[edge_kind_[j]].wing + kWeighChord * by_chord_[chord_kind_[j]].wing;
-    };
     const std::size_t family = star.closed ? 0 : out.first_wing && out.last_wing ? 1 : 2;
-    const std::int32_t whole_angle = std::max(angle_[n], 1);
-    const auto share = [&](std::uint32_t begin, std::uint32_t length) {
-        return share_class(angle_[begin + length] - angle_[begin], whole_angle);
-    };
     const auto& lengths = lengths_[family].count[std::min<std::size_t>(n, kLongest)];
-    const auto score = [&](std::uint32_t begin, std::uint32_t length) {
-        const std::size_t scaled = n <= kLongest ? length : std::size_t{length} * kLongest / n;
-        std::int32_t s = kWeighLength * log2_fixed(lengths[scaled]);
-        const std::uint32_t end = begin + length;
-        if (out.first_wing) s += wing(begin);
-        if (out.last_wing) s += wing(end);
-        // The ends of an open fan are the child's alone where there is no wing.
-        const std::uint32_t from = out.first_wing ? begin + 1 : begin, to = out.last_wing ? end : end + 1;
-        if (to > from) s += inside[to] - inside[from];
-        return s;
-    };
-    runs_.clear();
-    scores_.clear();
+    const std::int32_t to_share = share_scale(angle_[n]);
+    std::size_t count = 0, wanted = 0;
     const std::uint32_t shortest = family == 2 ? 0 : 1, longest = star.closed ? n - 1 : n;
     std::int32_t best = INT32_MIN;
-    std::size_t wanted = 0;
     for (std::uint32_t length = shortest; length <= longest; ++length) {
         const std::uint32_t first = family == 2 && out.first_wing ? last - length : 0,
-                            count = family == 2   ? 1
-                                    : star.closed ? n
-                                                  : n + 1 - length;
+                            runs = family == 2   ? 1
+                                   : star.closed ? n
+                                                 : n + 1 - length;
+        const std::size_t scaled = n <= kLongest ? length : std::size_t{length} * kLongest / n;
         // Runs of one length and share divide among them what that share has.
         const Shares& shares = shares_[!star.closed][std::min<std::size_t>(length, kLongest)];
         std::array<std::uint8_t, kShares> rivals{};
-        for (std::uint32_t begin = first; begin < first + count; ++begin) ++rivals[share(begin, length)];
-        const std::int32_t all = log2_fixed(shares.sum);
-        for (std::uint32_t begin = first; begin < first + count; ++begin) {
-            const std::size_t mine = share(begin, length);
-            if (!Coder::kDecodes && begin == cut.begin && length == cut.length) wanted = runs_.size();
-            runs_.push_back({begin, length});
-            scores_.push_back(score(begin, length) + kWeighShare * (log2_fixed(shares.count[mine]) - all -
-                                                                    log2_fixed(rivals[mine])));
-            best = std::max(best, scores_.back());
+        std::array<std::uint8_t, Star::kLargestFan> mine;
+        for (std::uint32_t i = 0; i < runs; ++i)
+            ++rivals[mine[i] = share_class(angle_[first + i + length] - angle_[first + i], to_share)];
+        const std::int32_t all =
+            kWeighLength * log2_fixed(lengths[scaled]) - kWeighShare * log2_fixed(shares.sum);
+        for (std::uint32_t i = 0; i < runs; ++i, ++count) {
+            const std::uint32_t begin = first + i, end = begin + length;
+            std::int32_t s = all + kWeighShare * (shares.log[mine[i]] - kSmallLogs[rivals[mine[i]]]);
+            if (out.first_wing) s += wing[begin];
+            if (out.last_wing) s += wing[end];
+            // The ends of an open fan are the child's alone where there is no wing.
+            const std::uint32_t from = out.first_wing ? begin + 1 : begin, to = out.last_wing ? end : end + 1;
+            if (to > from) s += inside[to] - inside[from];
+            if (!Coder::kDecodes && begin == cut.begin && length == cut.length) wanted = count;
+            runs_[count] = {static_cast<std::uint8_t>(begin), static_cast<std::uint8_t>(length)};
+            scores_[count] = s;
+            best = std::max(best, s);
         }
     }
-    weights_.resize(scores_.size());
     std::uint32_t sum = 0;
-    for (std::size_t i = 0; i < scores_.size(); ++i) {
+    for (std::size_t i = 0; i < count; ++i) {
         const std::int32_t below = (best - scores_[i]) >> 4, whole = (below + 255) >> 8;
         const std::uint32_t weight =
             whole > 12 ? 1
@@ -156,7 +161,7 @@ Cut CutModel::code(Coder& coder, const LiveStars& mesh, const Star& star, const 
         weights_[i] = weight;
         sum += weight;
     }
-    const std::size_t chosen = coder.pick(weights_, sum, wanted);
+    const std::size_t chosen = coder.pick(std::span(weights_).first(count), sum, wanted);
     out.begin = runs_[chosen].first;
     out.length = runs_[chosen].second;
     learn(star, out);

@@ -71,14 +71,12 @@ inline constexpr std::array<std::int16_t, 65> kArcCosines = {
     492,  481, 471, 461, 451, 440, 430, 419, 408, 398, 387, 376, 364, 353, 341, 329, 317,
     305,  292, 279, 265, 251, 236, 220, 203, 185, 165, 142, 116, 82,  0};
 
-/// The angle between two vectors of these squared lengths and this product, in 1/1024 of half a turn, in
-/// steps of the table; 0 if one of them is none.
-constexpr std::int32_t angle_between(std::int64_t product, std::uint64_t square_a, std::uint64_t square_b) {
-    if (square_a == 0 || square_b == 0) return 0;
+/// The angle between two vectors of this product, whose squared lengths have these logarithms, in 1/1024 of
+/// half a turn.
+constexpr std::int32_t angle_between(std::int64_t product, std::int32_t log_a, std::int32_t log_b) {
     const std::uint64_t size = static_cast<std::uint64_t>(product < 0 ? -product : product);
     // |cosine| = 2^log
-    const std::int32_t log =
-        size == 0 ? -4096 : log2_fixed(size) - (log2_fixed(square_a) + log2_fixed(square_b)) / 2;
+    const std::int32_t log = size == 0 ? -4096 : log2_fixed(size) - (log_a + log_b) / 2;
     const std::int32_t below = log < 0 ? -log : 0, whole = (below + 255) >> 8;
     const std::int32_t cosine =
         whole > 15 ? 0 : (kPowers[static_cast<std::size_t>(256 * whole - below)] >> whole) >> 5;

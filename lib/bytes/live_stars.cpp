@@ -72,6 +72,7 @@ void LiveStars::gather(std::uint32_t vertex, Star& star) const {
         const Triangle& c = triangles[t];
         from[i] = c[k == 2 ? 0 : k + 1];
         to[i] = c[k == 0 ? 2 : k - 1];
+        __builtin_prefetch(&vertices[from[i]]);
     }
     // Where does the fan begin: at the one edge that no other ends in, else at the least vertex of the ring.
     std::uint32_t start = n, least = 0;

@@ -389,7 +389,10 @@ void SplitCodec::apply(const SplitPlan& plan) {
         live.vertices[first + i].acted = live.vertices[first + i].touched = sweep_;
         asks_.add(first + i);
         if (birth.parent == kNoVertex) continue;
-        live.gather_corners(birth.parent, scratch_);
+        if (plan.births.size() == 1 && star_.centre == birth.parent)
+            scratch_ = star_.corners;  // as it was gathered for the cut
+        else
+            live.gather_corners(birth.parent, scratch_);
         touch_ring(birth.parent);
         for (const std::uint32_t corner : taken) live.hand_over(corner, first + i);
         std::erase_if(scratch_, [&](std::uint32_t corner) {
