@@ -11,7 +11,6 @@ namespace vsplit {
 void LiveStars::reserve(std::size_t vertex_count, std::size_t triangle_count) {
     vertices.reserve(vertex_count);
     triangles.reserve(triangle_count);
-    next_.reserve(3 * triangle_count);
 }
 
 void LiveStars::add_vertex(const Lattice3& at) {
@@ -23,10 +22,10 @@ void LiveStars::add_vertex(const Lattice3& at) {
 
 void LiveStars::add_triangle(const Triangle& corners) {
     const auto first = static_cast<std::uint32_t>(3 * triangles.size());
-    triangles.push_back(corners);
+    LiveTriangle& triangle = triangles.emplace_back(LiveTriangle{corners, {}});
     for (std::uint32_t k = 0; k < 3; ++k) {
         LiveVertex& vertex = vertices[corners[k]];
-        next_.push_back(vertex.first_corner);
+        triangle.next[k] = vertex.first_corner;
         vertex.first_corner = first + k;
         ++vertex.star;
     }
@@ -36,7 +35,7 @@ void LiveStars::add_triangle(const Triangle& corners) {
 void LiveStars::relink(std::uint32_t vertex, std::span<const std::uint32_t> corners) {
     std::uint32_t next = kNoVertex;
     for (const std::uint32_t corner : corners) {
-        next_[corner] = next;
+        triangles[corner / 3].next[corner % 3] = next;
         next = corner;
     }
     vertices[vertex].first_corner = next;
@@ -55,7 +54,8 @@ void LiveStars::weigh(std::uint32_t triangle, int sign) {
 
 void LiveStars::gather_corners(std::uint32_t vertex, std::vector<std::uint32_t>& corners) const {
     corners.clear();
-    for (std::uint32_t c = vertices[vertex].first_corner; c != kNoVertex; c = next_[c]) corners.push_back(c);
+    for (std::uint32_t c = vertices[vertex].first_corner; c != kNoVertex; c = triangles[c / 3].next[c % 3])
+        corners.push_back(c);
 }
 
 void LiveStars::gather(std::uint32_t vertex, Star& star) const {

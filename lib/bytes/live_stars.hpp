@@ -23,7 +23,7 @@ struct LiveVertex {
     Lattice3 at{};
     std::array<std::int64_t, 3>
         ring{};  ///< Sum, over the star's triangles, of the two other corners' places.
-    std::uint32_t first_corner = kNoVertex;  ///< Of a chain through LiveStars::next.
+    std::uint32_t first_corner = kNoVertex;  ///< Of a chain through the triangles.
     std::uint32_t star = 0;                  ///< Triangles in it.
     std::uint32_t touched = 0;               ///< The last sweep that changed its star, from 1.
     std::uint32_t acted = 0;                 ///< The last in which it was born, split or moved.
@@ -46,13 +46,19 @@ struct Star {
     std::uint32_t ring_at(std::uint32_t i) const { return ring[closed && i >= size ? i - size : i]; }
 };
 
+/// A triangle's corners, and for each the next in the chain of its vertex: together, because they are read
+/// together.
+struct LiveTriangle : Triangle {
+    std::array<std::uint32_t, 3> next;
+};
+
 class LiveStars {
   public:
     /// Room for a mesh of these counts.
     void reserve(std::size_t vertices, std::size_t triangles);
 
     std::vector<LiveVertex> vertices;
-    std::vector<Triangle> triangles;
+    std::vector<LiveTriangle> triangles;
 
     std::uint32_t vertex_count() const { return static_cast<std::uint32_t>(vertices.size()); }
     void add_vertex(const Lattice3& at);
@@ -76,7 +82,6 @@ class LiveStars {
     Lattice3 bump(std::uint32_t vertex) const;
 
   private:
-    std::vector<std::uint32_t> next_;  // one a corner
     std::vector<std::uint32_t> order_;
 };
 
