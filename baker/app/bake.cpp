@@ -32,8 +32,14 @@ struct BakeCommand {
     WriteOptions write;
     double show = 0;  ///< Of a progressive GLB, the ratio that viewers see.
     bool meshopt = false, draco = false;
+    bool lossless = false;
 
     int run() const;
+    WriteOptions rounding() const {
+        WriteOptions options = write;
+        if (lossless) options.position_bits = 0;
+        return options;
+    }
     /// A scene into a progressive GLB.
     int run_scene(bake::CollapseOptions options) const;
     /// The mesh to bake; if the input is a cloud of points, the surface made of it, told in `surface`.
@@ -82,18 +88,8 @@ int BakeCommand::run_scene(bake::CollapseOptions options) const {
     options.part_of = scene->part_of;
     auto result = bake::collapse(scene->mesh, options, bar.callback());
     if (!result) return fail_input(input.path, result.error());
-    auto stream = write_progressive_mesh(result->mesh, write);
+    auto stream = write_progressive_mesh(result->mesh, rounding());
     if (!stream) return fail_output(output.path, stream.error());
-    // Version 0 of the format has no attributes, and a scene without them would be none.
-    Limits limits;
-    limits.max_bytes = std::uint64_t{1} << 36;
-    const auto back = read_progressive_mesh(*stream, limits);
-    if (!back) return fail_output(output.path, back.error());
-    if (back->attributes.size() != result->mesh.attributes.size() ||
-        back->groups.size() != result->mesh.groups.size())
-        return fail_output(output.path,
-                           {ErrorCode::kUnsupported,
-                            "this version's .pmesh does not hold attributes and groups", Error::kNowhere, 0});
     const std::size_t triangles = result->mesh.triangles.size(), splits = result->mesh.splits.size();
     const std::size_t level = level_for_triangles(result->mesh, triangles_for_ratio(result->mesh, show));
     LiveMesh live(std::move(result->mesh));
@@ -155,7 +151,7 @@ int BakeCommand::run() const {
     if (!result) return fail_input(input.path, result.error());
     const std::size_t triangles = file->mesh.triangles.size();
     file->mesh = {};
-    auto bytes = write_progressive_mesh(result->mesh, write);
+    auto bytes = write_progressive_mesh(result->mesh, rounding());
     if (!bytes) return fail_output(output.path, bytes.error());
     if (const int failed = write_output(output, *bytes)) return failed;
 
@@ -232,6 +228,12 @@ void add_bake(CLI::App& app, int& exit) {
     command->input.add_to(*sub);
     command->cloud.add_to(*sub);
     command->collapse.add_to(*sub);
+    auto* bits = sub->add_option("--position-bits", command->write.position_bits,
+                                 "Places are rounded to this many bits of the longest side")
+                     ->check(CLI::Range(2, 20))
+                     ->capture_default_str();
+    sub->add_flag("--lossless", command->lossless, "Keep every float of places and attributes")
+        ->excludes(bits);
     sub->add_option("--block-bytes", command->write.block_bytes, "Size that blocks of splits aim at")
         ->check(CLI::Range(1024, 1 << 24))
         ->capture_default_str();

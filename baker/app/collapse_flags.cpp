@@ -15,9 +15,9 @@ void CollapseFlags::add_to(CLI::App& command) {
         ->check(CLI::IsMember({"optimal", "endpoint"}))
         ->capture_default_str();
     command
-        .add_option(
-            "--lock", locks,
-            "What never changes: boundary, seams, features=ANGLE (degrees between triangles); may be repeated")
+        .add_option("--lock", locks,
+                    "What never changes: boundary, seams, features=ANGLE (degrees between triangles); may be "
+                    "repeated")
         ->type_name("WHAT")
         ->allow_extra_args(false);
 }

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
+#include <cstring>
 #include <memory>
+#include <span>
 
 #include "command.hpp"
 #include "model.hpp"
@@ -13,20 +15,126 @@ namespace {
 struct InfoCommand {
     Common common;
     std::string input;
+    bool annotate = false;
     int run() const;
 };
+
+/// A line a field: offset, bytes, type, value, meaning, as in formats/spec/pmesh-1.md.
+class Annotation {
+  public:
+    explicit Annotation(std::span<const std::byte> bytes) : bytes_(bytes) {
+        fmt::print("{:>10} {:>8}  {:<5}  {:<24}  {}\n", "offset", "bytes", "type", "value", "meaning");
+    }
+    template <class T>
+    void field(const char* type, const std::string& meaning) {
+        T value;
+        std::memcpy(&value, bytes_.data() + at_, sizeof(T));
+        line(sizeof(T), type, fmt::format("{}", value), meaning);
+    }
+    void u8(const std::string& meaning) { field<std::uint8_t>("u8", meaning); }
+    void u16(const std::string& meaning) { field<std::uint16_t>("u16", meaning); }
+    void u32(const std::string& meaning) { field<std::uint32_t>("u32", meaning); }
+    void u64(const std::string& meaning) { field<std::uint64_t>("u64", meaning); }
+    void f32(const std::string& meaning) { field<float>("f32", meaning); }
+    void f64(const std::string& meaning) { field<double>("f64", meaning); }
+    void checksum(const std::string& meaning) {
+        std::uint64_t value;
+        std::memcpy(&value, bytes_.data() + at_, sizeof(value));
+        line(8, "u64", fmt::format("{:016x}", value), "checksum of " + meaning);
+    }
+    void text(std::size_t size, const std::string& meaning) {
+        std::string value;
+        for (std::size_t i = 0; i < size; ++i) {
+            const char c = static_cast<char>(bytes_[at_ + i]);
+            value += c >= ' ' && c < 127 ? std::string(1, c)
+                                         : fmt::format("\\x{:02x}", static_cast<unsigned char>(c));
+        }
+        line(size, "text", value, meaning);
+    }
+    void part(std::uint64_t size, const std::string& meaning) { line(size, "bytes", "", meaning); }
+    std::uint32_t next_byte(std::size_t ahead) const { return std::uint32_t(bytes_[at_ + ahead]); }
+    std::uint32_t next_u16() const { return next_byte(0) | next_byte(1) << 8; }
+
+  private:
+    void line(std::uint64_t size, const char* type, const std::string& value, const std::string& meaning) {
+        fmt::print("{:>10} {:>8}  {:<5}  {:<24}  {}\n", at_, size, type, value, meaning);
+        at_ += size;
+    }
+    std::span<const std::byte> bytes_;
+    std::uint64_t at_ = 0;
+};
+
+/// `info` is what read_info() said of these bytes, so every field is there.
+void annotate_file(std::span<const std::byte> bytes, const FileInfo& info) {
+    Annotation a(bytes);
+    a.text(8, "magic");
+    a.u32("version");
+    a.u32("flags: 1 painted weights, 2 lossless");
+    a.u64("length of the file");
+    a.u32("blocks");
+    for (const char* what : {"vertices", "triangles", "vertices of the base mesh",
+                             "triangles of the base mesh", "splits", "corner changes", "moves"})
+        a.u32(what);
+    for (const char* what : {"least x", "least y", "least z", "greatest x", "greatest y", "greatest z"})
+        a.f32(what);
+    a.u64("offset of the base mesh");
+    a.u32("bytes of the base mesh");
+    a.f32("geometric error of the base mesh");
+    a.checksum("the base mesh");
+    a.checksum("the table");
+    for (const char* what : {"lattice origin x", "lattice origin y", "lattice origin z", "lattice step"})
+        a.f64(what);
+    a.u32("bits of the lattice, 0 if lossless");
+    a.u32("bytes of the base mesh that are Draco's");
+    a.u32("largest group");
+    a.u32("bytes of the details");
+    a.u64("offset of the table");
+    a.checksum("the details");
+    a.checksum("the header");
+    a.part(126, "weights of prediction");
+    a.u16("attributes");
+    for (const AttributeInfo& attribute : info.attributes) {
+        const std::uint32_t components = a.next_byte(1), coding = a.next_byte(2);
+        a.u8(attribute.name + ": semantic");
+        a.u8(attribute.name + ": components");
+        a.u8(attribute.name + ": coding");
+        a.u8(attribute.name + ": bits");
+        for (std::uint32_t c = 0; coding == 1 && c < components; ++c) {
+            a.f64(fmt::format("{}: origin of component {}", attribute.name, c));
+            a.f64(fmt::format("{}: step of component {}", attribute.name, c));
+        }
+        const std::uint32_t length = a.next_u16();
+        a.u16(attribute.name + ": bytes of its name");
+        a.text(length, attribute.name + ": name");
+    }
+    a.part(info.base_draco_bytes, "base mesh: Draco");
+    a.part(info.base_bytes - info.base_draco_bytes, "base mesh: stream");
+    for (std::size_t i = 0; i < info.blocks.size(); ++i) {
+        const std::string block = fmt::format("block {}: ", i);
+        a.u64(block + "offset");
+        a.u32(block + "bytes");
+        a.checksum(fmt::format("block {}", i));
+        for (const char* what : {"splits", "vertices", "triangles", "corner changes", "moves"})
+            a.u32(block + what + " up to its end");
+        a.f32(block + "geometric error after it");
+    }
+    for (std::size_t i = 0; i < info.blocks.size(); ++i)
+        a.part(info.blocks[i].bytes, fmt::format("block {}", i));
+}
 
 Json to_json(const FileInfo& info) {
     Json blocks = Json::array();
     for (const BlockInfo& b : info.blocks)
         blocks.push_back({{"offset", b.offset},
                           {"bytes", b.bytes},
-                          {"raw_bytes", b.raw_bytes},
                           {"checksum", fmt::format("{:016x}", b.checksum)},
                           {"splits", b.splits_end},
                           {"vertices", b.vertices_end},
                           {"triangles", b.triangles_end},
                           {"error", b.error}});
+    Json attributes = Json::array();
+    for (const AttributeInfo& a : info.attributes)
+        attributes.push_back({{"name", a.name}, {"components", a.components}, {"exact", a.exact}});
     const auto point = [](const Float3& p) { return Json::array({p.x, p.y, p.z}); };
     return {{"version", info.version},
             {"bytes", info.file_bytes},
@@ -34,6 +142,10 @@ Json to_json(const FileInfo& info) {
             {"triangles", info.triangles},
             {"splits", info.splits},
             {"weights", info.has_weights},
+            {"lossless", info.lossless},
+            {"position_bits", info.position_bits},
+            {"position_step", info.position_step},
+            {"attributes", attributes},
             {"bounds", {{"min", point(info.bounds_min)}, {"max", point(info.bounds_max)}}},
             {"base",
              {{"offset", info.base_offset},
@@ -60,6 +172,10 @@ int InfoCommand::run() const {
              fmt::format("the file has {} bytes, its header announces {}", bytes.size(), info->file_bytes),
              std::min<std::uint64_t>(bytes.size(), info->file_bytes), 0});
     if (common.quiet) return kDone;
+    if (annotate) {
+        annotate_file(bytes, *info);
+        return kDone;
+    }
     if (common.json) {
         print_json(to_json(*info));
         return kDone;
@@ -69,6 +185,12 @@ int InfoCommand::run() const {
     say(common, fmt::format("  {} triangles, {} vertices, {} splits{}", with_commas(info->triangles),
                             with_commas(info->vertices), with_commas(info->splits),
                             info->has_weights ? ", painted weights" : ""));
+    say(common, info->lossless ? std::string("  lossless")
+                               : fmt::format("  places on a lattice of {} bits, step {}", info->position_bits,
+                                             short_number(info->position_step)));
+    for (const AttributeInfo& a : info->attributes)
+        say(common,
+            fmt::format("  attribute {}: {} components{}", a.name, a.components, a.exact ? ", exact" : ""));
     say(common, fmt::format("  bounds ({}, {}, {}) to ({}, {}, {})", info->bounds_min.x, info->bounds_min.y,
                             info->bounds_min.z, info->bounds_max.x, info->bounds_max.y, info->bounds_max.z));
     say(common, fmt::format("  {:>5}  {:>11} {:>9}  {:>11} {:>11}  {:>9}", "block", "offset", "bytes",
@@ -95,6 +217,7 @@ void add_info(CLI::App& app, int& exit) {
         "Say what a .pmesh, or the progressive GLB around one, holds, from its header and table alone");
     sub->footer("Example:\n  vsplit info bunny.pmesh --json");
     sub->add_option("input", command->input, "The .pmesh or progressive GLB")->required()->type_name("FILE");
+    sub->add_flag("--annotate", command->annotate, "Print every field: offset, bytes, type, value, meaning");
     command->common.add_to(*sub);
     sub->callback([command, &exit] { exit = command->run(); });
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <memory>
 
@@ -37,26 +38,43 @@ struct CornerBits {
 };
 using TriangleBits = std::array<CornerBits, 3>;
 
-std::vector<TriangleBits> triangle_bits(const Mesh& mesh, bool with_weights) {
+/// The place's bits; of a rounded file, those of the lattice point next to it.
+Float3 rounded(const Float3& p, const FileInfo& info) {
+    if (info.lossless || !(info.lattice_step > 0)) return p;
+    const auto nearest = [&](float v, double origin) {
+        const double n = (double(v) - origin) / info.lattice_step;
+        return static_cast<float>(n < 0 ? -std::floor(0.5 - n) : std::floor(n + 0.5));
+    };
+    return {nearest(p.x, info.lattice_origin[0]), nearest(p.y, info.lattice_origin[1]),
+            nearest(p.z, info.lattice_origin[2])};
+}
+
+std::vector<TriangleBits> triangle_bits(const Mesh& mesh, const FileInfo& info, bool with_weights) {
     std::vector<TriangleBits> all;
     all.reserve(mesh.triangles.size());
     for (const Triangle& t : mesh.triangles) {
         TriangleBits corners;
         for (std::size_t k = 0; k < 3; ++k) {
-            const Float3& p = mesh.positions[t[k]];
+            const Float3 p = rounded(mesh.positions[t[k]], info);
             const float w = with_weights ? mesh.weights[t[k]] : 0;
             std::memcpy(&corners[k].bits, &p, sizeof(p));
             std::memcpy(&corners[k].bits[3], &w, sizeof(w));
         }
-        std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
+        TriangleBits least = corners;  // of the three rotations: rounded corners may be equal
+        for (int turn = 0; turn < 2; ++turn) {
+            std::rotate(corners.begin(), corners.begin() + 1, corners.end());
+            least = std::min(least, corners);
+        }
+        corners = least;
         all.push_back(corners);
     }
     std::sort(all.begin(), all.end());
     return all;
 }
 
-Check compare(const Mesh& full, const Mesh& input) {
-    const std::string name = "full refinement equals the input";
+Check compare(const Mesh& full, const Mesh& input, const FileInfo& info) {
+    const std::string name =
+        info.lossless ? "full refinement equals the input" : "full refinement equals the input as rounded";
     const bake::MeshSurvey a = bake::survey_mesh(full), b = bake::survey_mesh(input);
     const auto differ = [&](const char* what, std::uint64_t x, std::uint64_t y) {
         return Check{name, false, fmt::format("{} {} in the file, {} in the input", x, what, y)};
@@ -71,11 +89,12 @@ Check compare(const Mesh& full, const Mesh& input) {
     if (a.non_manifold_vertices != b.non_manifold_vertices)
         return differ("non-manifold vertices", a.non_manifold_vertices, b.non_manifold_vertices);
     const bool weights = !full.weights.empty() && !input.weights.empty();
-    if (triangle_bits(full, weights) != triangle_bits(input, weights))
+    if (triangle_bits(full, info, weights) != triangle_bits(input, info, weights))
         return {name, false, "the corners of some triangle differ"};
     return {name, true,
-            fmt::format("{} triangles, {} vertices, every float{}", with_commas(a.triangles),
-                        with_commas(a.vertices), weights ? " and weight" : "")};
+            fmt::format("{} triangles, {} vertices, every {}{}", with_commas(a.triangles),
+                        with_commas(a.vertices), info.lossless ? "float" : "place",
+                        weights ? " and weight" : "")};
 }
 
 /// Bytes of all that a renderer reads at a level.
@@ -155,11 +174,11 @@ int VerifyCommand::run() const {
             if (!original) return fail_input(against.path, original.error());
             auto scene = load_scene(against, *original, exit);
             if (!scene) return exit;
-            checks.push_back(compare(live.snapshot(), scene->mesh));
+            checks.push_back(compare(live.snapshot(), scene->mesh, *info));
         } else {
             auto input = load_mesh(against, exit);
             if (!input) return exit;
-            checks.push_back(compare(live.snapshot(), input->mesh));
+            checks.push_back(compare(live.snapshot(), input->mesh, *info));
         }
     }
 

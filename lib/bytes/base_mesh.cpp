@@ -6,72 +6,26 @@
 #include <draco/compression/encode.h>
 #include <draco/mesh/mesh.h>
 
-#include <cstring>
 #include <memory>
 
 namespace vsplit {
-namespace {
 
-/// Adds `values` as an attribute whose entry i belongs to point i.
-template <int kComponents>
-int add_attribute(draco::Mesh& mesh, draco::GeometryAttribute::Type type, const float* values) {
-    draco::GeometryAttribute attribute;
-    attribute.Init(type, nullptr, kComponents, draco::DT_FLOAT32, false, kComponents * sizeof(float), 0);
-    const int id = mesh.AddAttribute(attribute, true, mesh.num_points());
-    for (std::uint32_t i = 0; i < mesh.num_points(); ++i)
-        mesh.attribute(id)->SetAttributeValue(draco::AttributeValueIndex(i),
-                                              values + std::size_t{kComponents} * i);
-    return id;
-}
-
-template <int kComponents>
-bool read_attribute(const draco::Mesh& mesh, draco::GeometryAttribute::Type type, float* values) {
-    const draco::PointAttribute* attribute = mesh.GetNamedAttribute(type);
-    if (!attribute || attribute->num_components() != kComponents ||
-        attribute->data_type() != draco::DT_FLOAT32)
-        return false;
-    for (std::uint32_t i = 0; i < mesh.num_points(); ++i) {
-        const draco::AttributeValueIndex at = attribute->mapped_index(draco::PointIndex(i));
-        if (at.value() >= attribute->size()) return false;
-        attribute->GetValue(at, values + std::size_t{kComponents} * i);
-    }
-    return true;
-}
-
-/// Draco knows no mesh without a triangle: its floats as they are, positions, then weights.
-std::vector<std::byte> encode_points(const Mesh& base) {
-    const auto positions = std::as_bytes(std::span(base.positions)),
-               weights = std::as_bytes(std::span(base.weights));
-    std::vector<std::byte> bytes(positions.begin(), positions.end());
-    bytes.insert(bytes.end(), weights.begin(), weights.end());
-    return bytes;
-}
-
-bool decode_points(std::span<const std::byte> bytes, std::uint32_t vertices, bool has_weights, Mesh& base) {
-    const std::size_t positions = std::size_t{vertices} * sizeof(Float3),
-                      weights = has_weights ? std::size_t{vertices} * sizeof(float) : 0;
-    if (bytes.size() != positions + weights) return false;
-    base.positions.resize(vertices);
-    base.weights.resize(has_weights ? vertices : 0);
-    if (positions > 0) std::memcpy(base.positions.data(), bytes.data(), positions);
-    if (weights > 0) std::memcpy(base.weights.data(), bytes.data() + positions, weights);
-    return true;
-}
-
-}  // namespace
-
-Result<std::vector<std::byte>> encode_base(const Mesh& base) {
-    if (base.triangles.empty()) return encode_points(base);
+Result<std::vector<std::byte>> encode_base(const BaseMesh& base) {
+    if (base.triangles.empty()) return std::vector<std::byte>{};
     draco::Mesh mesh;
-    mesh.set_num_points(static_cast<std::uint32_t>(base.positions.size()));
+    mesh.set_num_points(static_cast<std::uint32_t>(base.places.size()));
     mesh.SetNumFaces(base.triangles.size());
     for (std::uint32_t t = 0; t < base.triangles.size(); ++t) {
         draco::Mesh::Face face;
         for (std::size_t k = 0; k < 3; ++k) face[k] = draco::PointIndex(base.triangles[t][k]);
         mesh.SetFace(draco::FaceIndex(t), face);
     }
-    add_attribute<3>(mesh, draco::GeometryAttribute::POSITION, &base.positions.data()->x);
-    if (!base.weights.empty()) add_attribute<1>(mesh, draco::GeometryAttribute::GENERIC, base.weights.data());
+    draco::GeometryAttribute attribute;
+    attribute.Init(draco::GeometryAttribute::POSITION, nullptr, 3, draco::DT_INT32, false, sizeof(Lattice3),
+                   0);
+    const int id = mesh.AddAttribute(attribute, true, mesh.num_points());
+    for (std::uint32_t i = 0; i < mesh.num_points(); ++i)
+        mesh.attribute(id)->SetAttributeValue(draco::AttributeValueIndex(i), base.places[i].data());
 
     draco::Encoder encoder;
     encoder.SetEncodingMethod(draco::MESH_SEQUENTIAL_ENCODING);
@@ -84,16 +38,16 @@ Result<std::vector<std::byte>> encode_base(const Mesh& base) {
     return std::vector<std::byte>(data, data + buffer.size());
 }
 
-Result<Mesh> decode_base(std::span<const std::byte> bytes, std::uint32_t vertices, std::uint32_t triangles,
-                         bool has_weights) {
+Result<BaseMesh> decode_base(std::span<const std::byte> bytes, std::uint32_t vertices,
+                             std::uint32_t triangles) {
     const auto malformed = [](std::string message) {
         return Error{ErrorCode::kMalformed, std::move(message), Error::kNowhere, 0};
     };
+    BaseMesh base;
     if (triangles == 0) {
-        Mesh points;
-        if (!decode_points(bytes, vertices, has_weights, points))
-            return malformed("the base mesh has other bytes than its points need");
-        return points;
+        if (!bytes.empty()) return malformed("a base mesh without triangles has Draco bytes");
+        base.places.resize(vertices);
+        return base;
     }
     if (vertices == 0) return malformed("the base mesh has triangles but no vertices");
     draco::DecoderBuffer buffer;
@@ -105,20 +59,30 @@ Result<Mesh> decode_base(std::span<const std::byte> bytes, std::uint32_t vertice
     const std::unique_ptr<draco::Mesh> source = std::move(decoded).value();
     if (source->num_points() != vertices || source->num_faces() != triangles)
         return malformed("the base mesh has other counts than the header announces");
-    Mesh mesh;
-    mesh.positions.resize(vertices);
-    mesh.triangles.resize(triangles);
-    if (!read_attribute<3>(*source, draco::GeometryAttribute::POSITION, &mesh.positions.data()->x))
-        return malformed("the base mesh has no float positions");
-    if (has_weights) {
-        mesh.weights.resize(vertices);
-        if (!read_attribute<1>(*source, draco::GeometryAttribute::GENERIC, mesh.weights.data()))
-            return malformed("the base mesh has no float weights");
+    const draco::PointAttribute* places = source->GetNamedAttribute(draco::GeometryAttribute::POSITION);
+    if (!places || places->num_components() != 3 || places->data_type() != draco::DT_INT32)
+        return malformed("the base mesh has no whole numbers for places");
+    base.places.resize(vertices);
+    for (std::uint32_t i = 0; i < vertices; ++i) {
+        const draco::AttributeValueIndex at = places->mapped_index(draco::PointIndex(i));
+        if (at.value() >= places->size()) return malformed("a place of the base mesh is missing");
+        places->GetValue(at, base.places[i].data());
+        for (const std::int32_t n : base.places[i])
+            if (n < -kLatticeReach || n > kLatticeReach)
+                return malformed("a place of the base mesh is too far away");
     }
-    for (std::uint32_t t = 0; t < triangles; ++t)
-        for (std::size_t k = 0; k < 3; ++k)
-            mesh.triangles[t][k] = source->face(draco::FaceIndex(t))[k].value();
-    return mesh;
+    base.triangles.resize(triangles);
+    for (std::uint32_t t = 0; t < triangles; ++t) {
+        Triangle& out = base.triangles[t];
+        for (std::size_t k = 0; k < 3; ++k) {
+            out[k] = source->face(draco::FaceIndex(t))[k].value();
+            if (out[k] >= vertices)
+                return malformed("a triangle of the base mesh names a vertex that does not exist");
+        }
+        if (out[0] == out[1] || out[1] == out[2] || out[2] == out[0])
+            return malformed("a triangle of the base mesh names a vertex twice");
+    }
+    return base;
 }
 
 }  // namespace vsplit

@@ -1,24 +1,30 @@
 // SPDX-FileCopyrightText: 2026 The vsplit authors
 // SPDX-License-Identifier: MIT
 //
-// The base mesh as Draco bytes: the only file of lib/bytes that names Draco.
+// The base mesh's triangles and places as Draco bytes: the only file of lib/bytes that names Draco.
 #pragma once
 
 #include <cstddef>
 #include <span>
 #include <vector>
 
-#include "vsplit/mesh.hpp"
+#include "live_stars.hpp"
 #include "vsplit/result.hpp"
 
 namespace vsplit {
 
-/// Draco's sequential coding without quantisation: order and floats come back exactly. A mesh without
-/// triangles is its plain floats.
-Result<std::vector<std::byte>> encode_base(const Mesh& base);
+struct BaseMesh {
+    std::vector<Lattice3> places;
+    std::vector<Triangle> triangles;
+};
 
-/// `vertices`, `triangles` and `has_weights` are what the header announces; anything else is kMalformed.
-Result<Mesh> decode_base(std::span<const std::byte> bytes, std::uint32_t vertices, std::uint32_t triangles,
-                         bool has_weights);
+/// Draco's sequential coding of whole numbers: order and places come back exactly. A mesh without triangles
+/// has no bytes (Draco knows none); its places are coded elsewhere.
+Result<std::vector<std::byte>> encode_base(const BaseMesh& base);
+
+/// `vertices` and `triangles` are what the header announces; anything else is kMalformed. Without triangles
+/// the places are zeros.
+Result<BaseMesh> decode_base(std::span<const std::byte> bytes, std::uint32_t vertices,
+                             std::uint32_t triangles);
 
 }  // namespace vsplit

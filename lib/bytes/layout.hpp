@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The vsplit authors
 // SPDX-License-Identifier: MIT
 //
-// Where things are in a .pmesh file of version 0 (formats/spec/pmesh-0.md), and the little-endian numbers in
+// Where things are in a .pmesh file of version 1 (formats/spec/pmesh-1.md), and the little-endian numbers in
 // it.
 #pragma once
 
@@ -19,12 +19,16 @@
 namespace vsplit {
 
 inline constexpr std::array<unsigned char, 8> kMagic = {0x8F, 'p', 'm', 'e', 's', 'h', '\r', '\n'};
-inline constexpr std::uint32_t kVersion = 0;
-inline constexpr std::uint32_t kFlagWeights = 1;
-inline constexpr std::size_t kHeaderBytes = 120;
-inline constexpr std::size_t kTableEntryBytes = 48;
+inline constexpr std::uint32_t kVersion = 1;
+inline constexpr std::uint32_t kFlagWeights = 1, kFlagLossless = 2;
+inline constexpr std::size_t kHeaderBytes = 184;
+inline constexpr std::size_t kTableEntryBytes = 44;
 inline constexpr std::size_t kTableChecksumAt = 104;
-inline constexpr std::size_t kHeaderChecksumAt = 112;
+inline constexpr std::size_t kDetailsChecksumAt = 168;
+inline constexpr std::size_t kHeaderChecksumAt = 176;
+/// A block holds at most so many births, triangles, corner changes, moves and splits a byte of it.
+inline constexpr std::uint64_t kPartsPerByte = 256;
+inline constexpr std::uint32_t kMostPositionBits = 20;
 
 static_assert(std::endian::native == std::endian::little, "numbers are copied as they are");
 

@@ -29,7 +29,9 @@ class Formats(CommandTest):
         for name in names:
             with self.subTest(name):
                 out = name + '.pmesh'
-                self.vsplit('bake', name, '-o', out)
+                self.vsplit('bake', name, '-o', 'rounded-' + out)
+                self.vsplit('verify', 'rounded-' + out, '--against', name)
+                self.vsplit('bake', name, '--lossless', '-o', out)
                 self.vsplit('verify', out, '--against', name)
                 self.vsplit('extract', out, '--ratio', 1, '-o', name + '.full.ply')
                 back = read_ply(self.path(name + '.full.ply'))
@@ -104,7 +106,8 @@ class Formats(CommandTest):
         info = self.json('info', 'model.pmesh')
         self.assertEqual(info['bytes'], self.path('model.pmesh').stat().st_size)
         self.assertGreaterEqual(len(info['blocks']), 2)
-        end = info['base']['offset'] + info['base']['bytes']
+        end = info['blocks'][0]['offset']
+        self.assertGreater(end, info['base']['offset'] + info['base']['bytes'])
         for block in info['blocks']:
             self.assertEqual(block['offset'], end)
             end += block['bytes']
@@ -206,7 +209,7 @@ class Formats(CommandTest):
         baked = {}
         for name, args in (('text', ('plain.obj', '--weights', 'weights.txt')), ('quality', ('quality.ply',)),
                            ('named', ('named.ply', '--weights', 'importance'))):
-            self.vsplit('bake', *args, '-o', f'{name}.pmesh')
+            self.vsplit('bake', *args, '--lossless', '-o', f'{name}.pmesh')
             baked[name] = self.path(f'{name}.pmesh').read_bytes()
             self.assertTrue(self.json('info', f'{name}.pmesh')['weights'])
         self.assertEqual(baked['text'], baked['quality'])
@@ -221,13 +224,13 @@ class Formats(CommandTest):
         self.assertGreater(left[0], 1.2 * left[1])
         # A GLB carries them as _WEIGHT, and a bake takes them up again.
         self.vsplit('extract', 'text.pmesh', '--ratio', 1, '-o', 'full.glb')
-        self.vsplit('bake', 'full.glb', '-o', 'again.pmesh')
+        self.vsplit('bake', 'full.glb', '--lossless', '-o', 'again.pmesh')
         self.vsplit('extract', 'again.pmesh', '--ratio', 1, '-o', 'again.ply')
         again = read_ply(self.path('again.ply'))
         self.assertEqual(sorted(zip(again.points, again.weights)), sorted(zip(points, weights)))
         # An infinite one stays to the last.
         self.write('inf.txt', '\n'.join('inf' if i == 0 else '1' for i in range(len(points))))
-        self.vsplit('bake', 'plain.obj', '--weights', 'inf.txt', '-o', 'inf.pmesh')
+        self.vsplit('bake', 'plain.obj', '--weights', 'inf.txt', '--lossless', '-o', 'inf.pmesh')
         self.vsplit('extract', 'inf.pmesh', '--triangles', 0, '-o', 'inf.ply')
         self.assertIn(points[0], read_ply(self.path('inf.ply')).points)
 

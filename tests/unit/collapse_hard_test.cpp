@@ -40,11 +40,19 @@ void require_sound(const Mesh& mesh, const Also& also) {
             live.go_to(live.max_level());
             REQUIRE(live.positions().size() + result->report.unused_vertices == mesh.positions.size());
             REQUIRE(triangle_bits(live.snapshot()) == triangle_bits(mesh));
-            const auto bytes = write_progressive_mesh(result->mesh);
-            REQUIRE(bytes.ok());
-            const auto back = read_progressive_mesh(*bytes);
-            REQUIRE(back.ok());
-            REQUIRE(same_bytes(*back, result->mesh));
+            WriteOptions lossless;
+            lossless.position_bits = 0;
+            for (const WriteOptions& written : {WriteOptions{}, lossless}) {
+                const auto bytes = write_progressive_mesh(result->mesh, written);
+                REQUIRE(bytes.ok());
+                const auto back = read_progressive_mesh(*bytes);
+                REQUIRE(back.ok());
+                const auto promised = canonical_progressive_mesh(result->mesh, written);
+                REQUIRE(promised.ok());
+                REQUIRE(same_bytes(*back, *promised));
+                if (written.position_bits == 0)
+                    REQUIRE(triangle_bits(cut(*back, back->splits.size())) == triangle_bits(mesh));
+            }
             also(*result);
         }
 }

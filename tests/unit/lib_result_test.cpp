@@ -9,7 +9,6 @@
 #include <string>
 
 #include "../../lib/bytes/checksum.hpp"
-#include "../../lib/bytes/columns.hpp"
 #include "family.hpp"
 #include "vsplit/mesh.hpp"
 #include "vsplit/result.hpp"
@@ -79,37 +78,6 @@ TEST_CASE("Checksums are XXH64 with seed 0") {
             text[i] ^= 1;
         }
     }
-}
-
-TEST_CASE("Column numbers come back") {
-    const float inf = std::numeric_limits<float>::infinity();
-    const float ascending[] = {-inf, -3e38f, -1, -1e-45f, -0.0f, 0.0f, 1e-45f, 1, 3e38f, inf};
-    for (std::size_t i = 0; i < std::size(ascending); ++i) {
-        const float back = from_ordered_bits(ordered_bits(ascending[i]));
-        REQUIRE(std::memcmp(&back, &ascending[i], sizeof(float)) == 0);
-        if (i > 0) REQUIRE(ordered_bits(ascending[i - 1]) < ordered_bits(ascending[i]));
-    }
-    for (const std::uint32_t value :
-         {0u, 1u, 127u, 128u, 16383u, 16384u, 0x7FFFFFFFu, 0x80000000u, 0xFFFFFFFFu}) {
-        REQUIRE(unzigzag(zigzag(value)) == value);
-        std::vector<std::byte> bytes;
-        put_varint(bytes, value);
-        REQUIRE(bytes.size() <= 5);
-        ColumnReader reader{bytes};
-        REQUIRE(reader.varint() == value);
-        REQUIRE(reader.ok);
-        REQUIRE(reader.bytes.empty());
-        // Cut short: not ok, and zeros for ever after.
-        ColumnReader cut{std::span(bytes).first(bytes.size() - 1)};
-        REQUIRE(cut.varint() == 0);
-        REQUIRE_FALSE(cut.ok);
-        REQUIRE(cut.varint() == 0);
-    }
-    // Too long for 32 bits.
-    const std::vector<std::byte> long_one(6, std::byte{0xFF});
-    ColumnReader reader{long_one};
-    reader.varint();
-    REQUIRE_FALSE(reader.ok);
 }
 
 TEST_CASE("mesh_fault names what is wrong") {

@@ -4,9 +4,12 @@
 // .pmesh bytes in. Every function here accepts hostile bytes: an Error with its offset, never a crash.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "vsplit/progressive_mesh.hpp"
@@ -23,7 +26,6 @@ struct Limits {
 struct BlockInfo {
     std::uint64_t offset = 0;      ///< In the file.
     std::uint32_t bytes = 0;       ///< As stored.
-    std::uint32_t raw_bytes = 0;   ///< Decompressed.
     std::uint64_t checksum = 0;    ///< XXH64 of the stored bytes.
     std::uint32_t splits_end = 0;  ///< Counts at the end of the block, from the start of the file.
     std::uint32_t vertices_end = 0;
@@ -33,15 +35,36 @@ struct BlockInfo {
     float error = 0;  ///< Geometric error after the block, in the object's units.
 };
 
+/// An attribute that the file has.
+struct AttributeInfo {
+    std::string name;
+    Semantic semantic = Semantic::kOther;
+    std::uint32_t components = 1;
+    bool exact = true;  ///< Every float is the input's.
+};
+
 /// What the front of the file says: everything but the mesh itself.
 struct FileInfo {
     std::uint32_t version = 0;
     bool has_weights = false;
+    bool lossless = false;            ///< Every float is the input's.
+    std::uint32_t position_bits = 0;  ///< 0 if lossless.
+    /// Distance of neighbouring places, in the object's units; none is further than half of it from where it
+    /// was, along an axis.
+    double position_step = 0;
+    std::array<double, 3> lattice_origin{};
+    double lattice_step = 0;  ///< Also of a lossless file, which goes on from there.
+    std::uint32_t largest_group = 0;
+    std::vector<AttributeInfo> attributes;
     std::uint64_t file_bytes = 0;
-    std::uint64_t data_offset = 0;  ///< End of the table.
+    std::uint64_t details_offset = 0;
+    std::uint32_t details_bytes = 0;
+    std::uint64_t table_offset = 0;
+    std::uint64_t data_offset = 0;  ///< End of the table: what read_info() wants to see.
     Float3 bounds_min, bounds_max;  ///< Of the full mesh.
     std::uint64_t base_offset = 0;
     std::uint32_t base_bytes = 0;
+    std::uint32_t base_draco_bytes = 0;  ///< The first of them.
     std::uint64_t base_checksum = 0;
     std::uint32_t base_vertices = 0, base_triangles = 0;
     float base_error = 0;  ///< Geometric error of the base mesh.
@@ -56,5 +79,37 @@ Result<FileInfo> read_info(std::span<const std::byte> bytes, const Limits& limit
 
 /// Reads a whole file. The result is sound: progressive_mesh_fault() is null.
 Result<ProgressiveMesh> read_progressive_mesh(std::span<const std::byte> bytes, const Limits& limits = {});
+
+/// Reads what a beginning of a file holds: table and base mesh at least, and all blocks that are whole. What
+/// is left of a block is ignored. The result is sound, and its error_at() the end is 0: ask the table for the
+/// error.
+Result<ProgressiveMesh> read_prefix(std::span<const std::byte> bytes, const Limits& limits = {});
+
+/// Decodes a file block by block, in order, as its bytes arrive. Memory as announced by read_info().
+class BlockDecoder {
+  public:
+    /// `front` is the file's beginning up to the end of table and base mesh (data_offset), or more of it.
+    static Result<BlockDecoder> begin(std::span<const std::byte> front, const Limits& limits = {});
+    BlockDecoder(BlockDecoder&&) noexcept;
+    BlockDecoder& operator=(BlockDecoder&&) noexcept;
+    ~BlockDecoder();
+
+    const FileInfo& info() const;
+    /// Blocks decoded so far; the next one wanted is info().blocks[blocks()].
+    std::size_t blocks() const;
+    /// Takes the stored bytes of the next block and appends its splits. After an error the decoder stays as
+    /// it is with the blocks before, unless the checksum was right and the contents lied: then it refuses all
+    /// that follows.
+    Status decode(std::span<const std::byte> stored);
+    /// The base mesh and the splits so far, each of them checked against the rules.
+    const ProgressiveMesh& mesh() const;
+    /// Gives the mesh away; the decoder is of no use afterwards.
+    ProgressiveMesh release();
+
+  private:
+    struct State;
+    explicit BlockDecoder(std::unique_ptr<State> state);
+    std::unique_ptr<State> state_;
+};
 
 }  // namespace vsplit

@@ -1,0 +1,88 @@
+// SPDX-FileCopyrightText: 2026 The vsplit authors
+// SPDX-License-Identifier: MIT
+//
+// The mesh at the level reached, as coding and decoding see it: places on the lattice, and which triangles
+// are around each vertex. Nothing in it depends on the mesh being manifold.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "vsplit/progressive_mesh.hpp"
+
+namespace vsplit {
+
+using Lattice3 = std::array<std::int32_t, 3>;
+
+/// Places lie within this distance of the lattice's origin, so that sums of them stay exact.
+inline constexpr std::int32_t kLatticeReach = 1 << 22;
+
+struct LiveVertex {
+    Lattice3 at{};
+    std::array<std::int64_t, 3>
+        ring{};  ///< Sum, over the star's triangles, of the two other corners' places.
+    std::uint32_t first_corner = kNoVertex;  ///< Of a chain through the triangles.
+    std::uint32_t star = 0;                  ///< Triangles in it.
+    std::uint32_t touched = 0;               ///< The last sweep that changed its star, from 1.
+    std::uint32_t acted = 0;                 ///< The last in which it was born, split or moved.
+    std::uint32_t twin = 0;                  ///< The next in the ring of vertices born at the same place.
+};
+
+/// The star of a vertex, and its ring in order if the triangles are a single fan.
+struct Star {
+    static constexpr std::size_t kLargestFan = 32;
+
+    std::uint32_t centre = kNoVertex;
+    std::vector<std::uint32_t> corners;  ///< Those that hold the centre, ascending if it is no fan.
+    bool fan = false;                    ///< At most kLargestFan triangles, in one closed or open fan.
+    bool closed = false;
+    std::uint32_t size = 0;  ///< Triangles.
+    std::array<std::uint32_t, kLargestFan + 1>
+        ring{};  ///< Sector i lies between ring i and i + 1 (closed: modulo size).
+    std::array<std::uint32_t, kLargestFan> sector{};  ///< Triangles.
+    std::uint32_t ring_size() const { return closed ? size : size + 1; }
+    std::uint32_t ring_at(std::uint32_t i) const { return ring[closed && i >= size ? i - size : i]; }
+};
+
+/// A triangle's corners, and for each the next in the chain of its vertex: together, because they are read
+/// together.
+struct LiveTriangle : Triangle {
+    std::array<std::uint32_t, 3> next;
+};
+
+class LiveStars {
+  public:
+    /// Room for a mesh of these counts.
+    void reserve(std::size_t vertices, std::size_t triangles);
+
+    std::vector<LiveVertex> vertices;
+    std::vector<LiveTriangle> triangles;
+
+    std::uint32_t vertex_count() const { return static_cast<std::uint32_t>(vertices.size()); }
+    void add_vertex(const Lattice3& at);
+    /// Corners below vertex_count(), three different ones.
+    void add_triangle(const Triangle& corners);
+    /// A corner goes over from the vertex that holds it to another. The chains of both are left to relink().
+    void hand_over(std::uint32_t corner, std::uint32_t vertex) { triangles[corner / 3][corner % 3] = vertex; }
+    /// Makes these corners the chain of the vertex that all of them hold.
+    void relink(std::uint32_t vertex, std::span<const std::uint32_t> corners);
+
+    /// Adds (sign 1) or takes away (-1) a triangle's places from the ring sums of its corners.
+    void weigh(std::uint32_t triangle, int sign);
+
+    void gather(std::uint32_t vertex, Star& star) const;
+    void gather_corners(std::uint32_t vertex, std::vector<std::uint32_t>& corners) const;
+
+    /// Vertices of one place become twins of each other: among `first` and those after it.
+    void link_twins(std::uint32_t first);
+
+    /// How far a vertex is from the mean of its neighbours, in 1/16; zeros where the star is empty or vast.
+    Lattice3 bump(std::uint32_t vertex) const;
+
+  private:
+    std::vector<std::uint32_t> order_;
+};
+
+}  // namespace vsplit

@@ -1,0 +1,130 @@
+// SPDX-FileCopyrightText: 2026 The vsplit authors
+// SPDX-License-Identifier: MIT
+//
+// Where a child is born and where its parent moves: predicted from the ring around it with weights that the
+// file brings, then coded as differences, first along the surface and then across it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "cut_model.hpp"
+#include "live_stars.hpp"
+#include "number_models.hpp"
+
+namespace vsplit {
+
+/// What is predicted: the child of a parent that stays, of one that moves, and the parent's move.
+enum class PlaceKind : std::uint8_t { kBirth, kBirthMoving, kMove };
+inline constexpr std::size_t kPlaceKinds = 3;
+inline constexpr std::size_t kPlaceClasses = 7;  ///< Of the ring: 2, 3, ... 6, 7 and more vertices; open.
+inline constexpr std::size_t kPlaceGuides = 3;
+
+/// Weights of the guides in 1/64, along the surface and across it.
+using PlaceWeights =
+    std::array<std::array<std::array<std::array<std::int8_t, kPlaceGuides>, 2>, kPlaceClasses>, kPlaceKinds>;
+/// What a writer starts from.
+PlaceWeights default_place_weights();
+
+/// Offsets from the parent's old place in 1/16 that the prediction mixes, and what to expect of its failure.
+struct PlaceGuides {
+    PlaceKind kind = PlaceKind::kBirth;
+    std::uint32_t ring_class = 0;
+    Lattice3 from{};  ///< The parent's old place.
+    std::array<std::array<std::int32_t, 3>, kPlaceGuides> guide{};
+    std::array<std::int64_t, 3>
+        normal{};            ///< Of the ring's polygon; its largest component is that of `across`.
+    std::size_t across = 2;  ///< The axis coded last.
+    std::array<std::uint32_t, 3> spread{};  ///< Mean distance of ring and prediction along each axis, in 1/4.
+    std::uint32_t roughness = 0;            ///< How far the ring is from flat, along `across`, in 1/4.
+};
+
+/// `polygon` is the ring of the vertex to place, in order; `through` tells its first and last (the wings).
+struct Ring {
+    std::array<std::uint32_t, Star::kLargestFan + 3> vertex{};
+    std::uint32_t size = 0;
+    bool open = false;
+};
+
+class PlaceModel {
+  public:
+    explicit PlaceModel(const PlaceWeights& weights) : weights_(weights) {}
+
+    /// For a child with this ring (its parent, still at its old place, not in it).
+    PlaceGuides guide_birth(const LiveStars& mesh, std::uint32_t parent, const Ring& ring, bool moving) const;
+    /// For the parent, whose child is now at `child`; the ring without the child.
+    PlaceGuides guide_move(const LiveStars& mesh, std::uint32_t parent, const Ring& ring,
+                           const Lattice3& child) const;
+
+    template <class Coder>
+    Lattice3 code(Coder& coder, PlaceGuides& guides, const Lattice3& place);
+    /// Without any guide: the difference to a place nearby.
+    template <class Coder>
+    Lattice3 code_free(Coder& coder, const Lattice3& near, const Lattice3& place);
+
+  private:
+    /// The point that the weights of `row` (0 along, 1 across) make of the guides, in 1/16.
+    std::array<std::int64_t, 3> mix(const PlaceGuides& guides, std::size_t row) const;
+    void measure(const LiveStars& mesh, const Ring& ring, const Lattice3& extra, PlaceGuides& guides) const;
+
+    PlaceWeights weights_;
+    ResidualModel<56, 3> first_[kPlaceKinds];
+    ResidualModel<56, 3> second_[kPlaceKinds];
+    ResidualModel<56, 4> third_[kPlaceKinds];
+    ResidualModel<1> free_;
+};
+
+inline std::int32_t within_reach(std::int64_t value) {
+    return static_cast<std::int32_t>(value < -kLatticeReach  ? -kLatticeReach
+                                     : value > kLatticeReach ? kLatticeReach
+                                                             : value);
+}
+
+/// Classes of a difference against the scale that was expected of it, for those that follow it.
+inline std::uint32_t departure_class(std::int32_t difference, std::uint32_t scale) {
+    const std::uint32_t class_now =
+        half_octave(static_cast<std::uint64_t>(4 * std::abs(std::int64_t{difference})));
+    return class_now + 2 < scale ? 0 : class_now > scale + 1 ? 2 : 1;
+}
+
+template <class Coder>
+Lattice3 PlaceModel::code(Coder& coder, PlaceGuides& g, const Lattice3& place) {
+    const std::size_t c = g.across, a = c == 0 ? 1 : 0, b = c == 2 ? 1 : 2,
+                      kind = static_cast<std::size_t>(g.kind);
+    const auto along = mix(g, 0), across = mix(g, 1);
+    Lattice3 out{};
+    const auto predicted = [&](std::size_t axis) {
+        return within_reach(g.from[axis] + ((along[axis] + 8) >> 4));
+    };
+    const std::uint32_t scale_a = half_octave(g.spread[a]), scale_b = half_octave(g.spread[b]);
+    const std::uint32_t flatness = std::min(half_octave(g.roughness), 55u);
+    const std::uint32_t mean_scale = (scale_a + scale_b) / 2;
+    const std::uint32_t bent = flatness + 6 < mean_scale ? 0 : flatness + 2 < mean_scale ? 1 : 2;
+    const std::int32_t at_a = predicted(a), at_b = predicted(b);
+    out[a] = within_reach(std::int64_t{at_a} + first_[kind].code(coder, scale_a, bent, place[a] - at_a));
+    const std::uint32_t missed_a = departure_class(out[a] - at_a, scale_a);
+    out[b] = within_reach(std::int64_t{at_b} + second_[kind].code(coder, scale_b, missed_a, place[b] - at_b));
+    const std::uint32_t missed = std::max(missed_a, departure_class(out[b] - at_b, scale_b));
+    // Along the plane of the ring, from the point that the second row of weights predicts.
+    std::int64_t slide = 0;
+    if (g.normal[c] != 0) {
+        const std::int64_t side = (16 * (std::int64_t{out[a]} - g.from[a]) - across[a]) * g.normal[a] +
+                                  (16 * (std::int64_t{out[b]} - g.from[b]) - across[b]) * g.normal[b];
+        slide = g.normal[c] > 0 ? rounded_quotient(side, g.normal[c]) : rounded_quotient(-side, -g.normal[c]);
+    }
+    const std::int32_t at_c = within_reach(g.from[c] + ((across[c] - slide + 8) >> 4));
+    out[c] = within_reach(std::int64_t{at_c} + third_[kind].code(coder, flatness, missed, place[c] - at_c));
+    return out;
+}
+
+template <class Coder>
+Lattice3 PlaceModel::code_free(Coder& coder, const Lattice3& near, const Lattice3& place) {
+    Lattice3 out{};
+    for (std::size_t i = 0; i < 3; ++i)
+        out[i] = within_reach(std::int64_t{near[i]} + free_.code(coder, 0, 0, place[i] - near[i]));
+    return out;
+}
+
+}  // namespace vsplit

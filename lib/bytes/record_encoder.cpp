@@ -1,0 +1,242 @@
+// SPDX-FileCopyrightText: 2026 The vsplit authors
+// SPDX-License-Identifier: MIT
+#include "record_encoder.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+
+namespace vsplit {
+
+namespace {
+
+void find_trades(const ProgressiveMesh& mesh, WholeNumbers& numbers) {
+    // Where each vertex is as the record goes: its birth, or its last move.
+    std::vector<std::uint32_t> move_of(mesh.positions.size(), kNoVertex);
+    const auto stride = static_cast<std::ptrdiff_t>(numbers.stride);
+    numbers.traded.assign(mesh.positions.size(), false);
+    std::uint32_t begin = mesh.base_vertices, move = 0;
+    for (const Split& split : mesh.splits) {
+        for (std::uint32_t v = begin; v < split.vertices_end; ++v) {
+            const std::uint32_t parent = mesh.parents[v];
+            if (parent == kNoVertex) continue;
+            std::uint32_t children = 0, moves = 0;
+            for (std::uint32_t w = begin; w < split.vertices_end; ++w) children += mesh.parents[w] == parent;
+            for (std::uint32_t m = move; m < split.moves_end; ++m) moves += mesh.moves[m].vertex == parent;
+            if (children != 1 || moves == 0) continue;
+            const std::uint32_t now = move_of[parent];
+            const bool moved = now != kNoVertex;
+            const std::uint32_t row = moved ? now : parent;
+            const auto values = numbers.birth_values.begin() + v * stride,
+                       parent_values =
+                           (moved ? numbers.move_values : numbers.birth_values).begin() + row * stride;
+            numbers.traded[v] =
+                numbers.birth_at[v] == (moved ? numbers.move_at : numbers.birth_at)[row] &&
+                (!numbers.lossless ||
+                 numbers.birth_finer[v] == (moved ? numbers.move_finer : numbers.birth_finer)[row]) &&
+                std::equal(values, values + stride, parent_values);
+        }
+        for (; move < split.moves_end; ++move) move_of[mesh.moves[move].vertex] = move;
+        begin = split.vertices_end;
+    }
+}
+
+}  // namespace
+
+WholeNumbers whole_numbers(const ProgressiveMesh& mesh, const Lattice& lattice, const WriteOptions& options) {
+    WholeNumbers out;
+    out.lattice = lattice;
+    out.weights = !mesh.weights.empty();
+    out.lossless = options.position_bits == 0;
+    for (const std::uint32_t group : mesh.groups) out.largest_group = std::max(out.largest_group, group);
+    for (std::size_t i = 0; i < mesh.attributes.size(); ++i)
+        out.details.rules.push_back(
+            rule_for(mesh.attributes[i], mesh.moved_values[i], options, lattice.step));
+    out.stride = out.shape().stride();
+
+    const std::size_t vertices = mesh.positions.size(), moves = mesh.moves.size();
+    out.birth_at.reserve(vertices);
+    out.move_at.reserve(moves);
+    for (const Float3& p : mesh.positions) out.birth_at.push_back(lattice.nearest(p));
+    for (const VertexMove& move : mesh.moves) out.move_at.push_back(lattice.nearest(move.position));
+    if (out.lossless) {
+        for (std::size_t v = 0; v < vertices; ++v)
+            out.birth_finer.push_back(lattice.finer(out.birth_at[v], mesh.positions[v]));
+        for (std::size_t m = 0; m < moves; ++m)
+            out.move_finer.push_back(lattice.finer(out.move_at[m], mesh.moves[m].position));
+    }
+    out.birth_values.resize(vertices * out.stride);
+    out.move_values.resize(moves * out.stride);
+    std::size_t column = 0;
+    for (std::size_t i = 0; i < mesh.attributes.size(); ++i) {
+        const ValueRule& rule = out.details.rules[i];
+        for (std::size_t v = 0; v < vertices; ++v)
+            rule.quantise(mesh.attributes[i].values.data() + v * rule.components,
+                          out.birth_values.data() + v * out.stride + column);
+        for (std::size_t m = 0; m < moves; ++m)
+            rule.quantise(mesh.moved_values[i].data() + m * rule.components,
+                          out.move_values.data() + m * out.stride + column);
+        column += rule.numbers();
+    }
+    if (out.weights) {
+        for (std::size_t v = 0; v < vertices; ++v)
+            out.birth_values[v * out.stride + column] = ordered_number(mesh.weights[v]);
+        for (std::size_t m = 0; m < moves; ++m)
+            out.move_values[m * out.stride + column] = ordered_number(mesh.moves[m].weight);
+    }
+    find_trades(mesh, out);
+    return out;
+}
+
+RecordEncoder::RecordEncoder(const ProgressiveMesh& mesh, const WholeNumbers& numbers,
+                             const std::vector<Sweep>& sweeps)
+    : mesh_(mesh), numbers_(numbers), sweeps_(sweeps), codec_(numbers.shape(), numbers.details.weights) {
+    vertex_.assign(mesh.positions.size(), kNoVertex);
+    triangle_.assign(mesh.triangles.size(), kNoVertex);
+    codec_.live.reserve(mesh.positions.size(), mesh.triangles.size());
+    for (std::uint32_t v = 0; v < mesh.base_vertices; ++v) {
+        vertex_[v] = v;
+        codec_.live.add_vertex(numbers.birth_at[v]);
+        if (numbers.lossless) codec_.finer.push_back(numbers.birth_finer[v]);
+    }
+    codec_.values.assign(
+        numbers.birth_values.begin(),
+        numbers.birth_values.begin() + static_cast<std::ptrdiff_t>(mesh.base_vertices * numbers.stride));
+    for (std::uint32_t t = 0; t < mesh.base_triangles; ++t) {
+        triangle_[t] = t;
+        codec_.live.add_triangle(mesh.triangles[t]);
+        if (numbers.largest_group > 0) codec_.groups.push_back(mesh.groups[t]);
+    }
+}
+
+BaseMesh RecordEncoder::base() const {
+    return {{numbers_.birth_at.begin(), numbers_.birth_at.begin() + mesh_.base_vertices},
+            {mesh_.triangles.begin(), mesh_.triangles.begin() + mesh_.base_triangles}};
+}
+
+Split RecordEncoder::before(std::uint32_t split) const {
+    return split == 0 ? Split{mesh_.base_vertices, mesh_.base_triangles, 0, 0, 0} : mesh_.splits[split - 1];
+}
+
+std::uint32_t RecordEncoder::last_move(std::uint32_t vertex, const Split& from, const Split& to) const {
+    for (std::uint32_t m = to.moves_end; m-- > from.moves_end;)
+        if (mesh_.moves[m].vertex == vertex) return m;
+    return kNoVertex;
+}
+
+void RecordEncoder::plan(std::uint32_t number, SplitPlan& out) {
+    out.clear();
+    const Split from = before(number), to = mesh_.splits[number];
+    births_.clear();
+    for (std::uint32_t v = from.vertices_end; v < to.vertices_end; ++v) {
+        Born born{v, mesh_.parents[v] == kNoVertex ? kNoVertex : vertex_[mesh_.parents[v]], kNoVertex, {}};
+        if (numbers_.traded[v]) born.traded_move = last_move(mesh_.parents[v], from, to);
+        for (std::uint32_t c = from.corners_end; c < to.corners_end; ++c)
+            if (mesh_.corner_changes[c].vertex == v) born.taken.push_back(mesh_.corner_changes[c].corner / 3);
+        for (std::uint32_t& t : born.taken) t = triangle_[t];
+        births_.push_back(std::move(born));
+    }
+    std::stable_sort(births_.begin(), births_.end(),
+                     [](const Born& a, const Born& b) { return a.parent < b.parent; });
+
+    const auto stride = static_cast<std::ptrdiff_t>(numbers_.stride);
+    const std::uint32_t alive = codec_.live.vertex_count();
+    for (std::uint32_t i = 0; i < births_.size(); ++i) {
+        Born& born = births_[i];
+        const bool traded = born.traded_move != kNoVertex;
+        SplitPlan::Birth birth;
+        birth.parent = born.parent;
+        const std::vector<std::int32_t>& values = traded ? numbers_.move_values : numbers_.birth_values;
+        const std::uint32_t from_row = traded ? born.traded_move : born.vertex;
+        birth.at = traded ? numbers_.move_at[from_row] : numbers_.birth_at[from_row];
+        if (numbers_.lossless)
+            birth.finer = traded ? numbers_.move_finer[from_row] : numbers_.birth_finer[from_row];
+        const auto row = values.begin() + static_cast<std::ptrdiff_t>(from_row) * stride;
+        out.birth_values.insert(out.birth_values.end(), row, row + stride);
+        // The one that stays where it is keeps the number; the one that goes gets the new one.
+        vertex_[born.vertex] = traded ? born.parent : alive + i;
+        if (traded) vertex_[mesh_.parents[born.vertex]] = alive + i;
+        const auto begin = static_cast<std::ptrdiff_t>(out.taken.size());
+        if (birth.parent != kNoVertex) {
+            std::sort(born.taken.begin(), born.taken.end());
+            codec_.live.gather_corners(birth.parent, corners_);
+            for (const std::uint32_t corner : corners_)
+                if (std::binary_search(born.taken.begin(), born.taken.end(), corner / 3) != traded)
+                    out.taken.push_back(corner);
+        }
+        std::sort(out.taken.begin() + begin, out.taken.end());
+        birth.taken_end = static_cast<std::uint32_t>(out.taken.size());
+        out.births.push_back(birth);
+    }
+    recorded_triangles_.clear();
+    for (std::uint32_t t = from.triangles_end; t < to.triangles_end; ++t) {
+        const Triangle& c = mesh_.triangles[t];
+        recorded_triangles_.push_back(t);
+        out.triangles.push_back({vertex_[c[0]], vertex_[c[1]], vertex_[c[2]]});
+        if (numbers_.largest_group > 0) out.groups.push_back(mesh_.groups[t]);
+    }
+    // The last move of a vertex is the one that counts; one that changes no number is none.
+    for (std::uint32_t m = from.moves_end; m < to.moves_end; ++m) {
+        if (last_move(mesh_.moves[m].vertex, from, to) != m) continue;
+        const bool traded =
+            std::any_of(births_.begin(), births_.end(), [&](const Born& b) { return b.traded_move == m; });
+        if (traded) continue;
+        SplitPlan::Move move;
+        move.vertex = vertex_[mesh_.moves[m].vertex];
+        move.at = numbers_.move_at[m];
+        if (numbers_.lossless) move.finer = numbers_.move_finer[m];
+        const auto values = numbers_.move_values.begin() + static_cast<std::ptrdiff_t>(m) * stride;
+        if (move.at == codec_.live.vertices[move.vertex].at &&
+            (!numbers_.lossless || move.finer == codec_.finer[move.vertex]) &&
+            std::equal(values, values + stride,
+                       codec_.values.begin() + static_cast<std::ptrdiff_t>(move.vertex) * stride))
+            continue;
+        out.moves.push_back(move);
+        out.move_values.insert(out.move_values.end(), values, values + stride);
+    }
+}
+
+void RecordEncoder::learn_numbers(const SplitPlan& wanted, const SplitPlan& coded) {
+    const auto first = static_cast<std::uint32_t>(codec_.live.triangles.size() - coded.triangles.size());
+    assert(wanted.triangles.size() == coded.triangles.size() && wanted.taken == coded.taken &&
+           wanted.moves.size() == coded.moves.size());
+    static_cast<void>(wanted);
+    for (std::uint32_t i = 0; i < coded.sources.size(); ++i)
+        triangle_[recorded_triangles_[coded.sources[i]]] = first + i;
+}
+
+template <class Coder>
+void RecordEncoder::code_base(Coder& coder) {
+    codec_.code_base(coder);
+}
+
+template <class Coder>
+void RecordEncoder::code_splits(Coder& coder, const std::function<void(const SplitPlan&, float)>& done) {
+    for (const Sweep& sweep : sweeps_) {
+        const auto marked = std::count_if(sweep.steps.begin(), sweep.steps.end(),
+                                          [](const Sweep::Step& step) { return step.primary != kNoVertex; });
+        SweepHead head{static_cast<std::uint32_t>(marked),
+                       static_cast<std::uint32_t>(sweep.steps.size()) - static_cast<std::uint32_t>(marked),
+                       std::bit_cast<std::uint32_t>(sweep.error)};
+        const char* fault = codec_.code_head(coder, head);
+        for (const Sweep::Step& step : sweep.steps) {
+            std::uint32_t primary = step.primary;
+            if (!fault && primary != kNoVertex) fault = codec_.code_mark(coder, primary);
+            plan(step.split, wanted_);
+            assert(primary == kNoVertex || wanted_.births[0].parent == primary);
+            if (!fault) fault = codec_.code_split(coder, primary, wanted_, coded_);
+            codec_.apply(coded_);
+            learn_numbers(wanted_, coded_);
+            done(coded_, sweep.error);
+        }
+        assert(!fault);
+        static_cast<void>(fault);
+    }
+}
+
+template void RecordEncoder::code_base(RangeEncoder&);
+template void RecordEncoder::code_base(NoCoder&);
+template void RecordEncoder::code_splits(RangeEncoder&, const std::function<void(const SplitPlan&, float)>&);
+template void RecordEncoder::code_splits(NoCoder&, const std::function<void(const SplitPlan&, float)>&);
+
+}  // namespace vsplit

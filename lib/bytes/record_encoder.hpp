@@ -1,0 +1,73 @@
+// SPDX-FileCopyrightText: 2026 The vsplit authors
+// SPDX-License-Identifier: MIT
+//
+// A record in whole numbers, given to the codec in the canonical order.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "base_mesh.hpp"
+#include "details.hpp"
+#include "schedule.hpp"
+#include "split_codec.hpp"
+
+namespace vsplit {
+
+/// Every place and value of a progressive mesh as the stream has it.
+struct WholeNumbers {
+    Lattice lattice;
+    Details details;
+    bool weights = false, lossless = false;
+    std::uint32_t largest_group = 0;
+    std::vector<Lattice3> birth_at, move_at;
+    std::vector<std::array<std::uint32_t, 3>> birth_finer, move_finer;  ///< Empty unless lossless.
+    std::vector<std::int32_t> birth_values, move_values;
+    std::size_t stride = 0;
+    /// Per vertex: it is born where its only parent was, and the parent moves away with it alone. Then the
+    /// two change names, and nothing moves.
+    std::vector<bool> traded;
+
+    StreamShape shape() const { return shape_of(details, weights, lossless, largest_group); }
+};
+WholeNumbers whole_numbers(const ProgressiveMesh& mesh, const Lattice& lattice, const WriteOptions& options);
+
+/// Walks a record sweep by sweep, keeping track of how the canonical order renumbers it.
+class RecordEncoder {
+  public:
+    RecordEncoder(const ProgressiveMesh& mesh, const WholeNumbers& numbers, const std::vector<Sweep>& sweeps);
+
+    SplitCodec& codec() { return codec_; }
+    BaseMesh base() const;
+    /// Codes the base mesh's extras.
+    template <class Coder>
+    void code_base(Coder& coder);
+    /// Codes all splits; `done` is told of each after it was made, with its sweep's error.
+    template <class Coder>
+    void code_splits(Coder& coder, const std::function<void(const SplitPlan&, float)>& done);
+
+  private:
+    /// A vertex born in the split being planned.
+    struct Born {
+        std::uint32_t vertex, parent;      ///< In the record; canonical.
+        std::uint32_t traded_move;         ///< The parent's move if the two change names, else kNoVertex.
+        std::vector<std::uint32_t> taken;  ///< Canonical triangles, ascending.
+    };
+
+    void plan(std::uint32_t split, SplitPlan& out);
+    std::uint32_t last_move(std::uint32_t vertex, const Split& from, const Split& to) const;
+    void learn_numbers(const SplitPlan& wanted, const SplitPlan& coded);
+    Split before(std::uint32_t split) const;
+
+    const ProgressiveMesh& mesh_;
+    const WholeNumbers& numbers_;
+    const std::vector<Sweep>& sweeps_;
+    SplitCodec codec_;
+    std::vector<std::uint32_t> vertex_, triangle_;  ///< The record's numbers to the canonical ones.
+    std::vector<Born> births_;
+    std::vector<std::uint32_t> recorded_triangles_, corners_;
+    SplitPlan wanted_, coded_;
+};
+
+}  // namespace vsplit

@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: 2026 The vsplit authors
+// SPDX-License-Identifier: MIT
+//
+// The order in which a record's splits are written: in sweeps over the vertices, each of which asks every
+// vertex whether it splits, and again when its star has changed; so that which vertex splits next costs a few
+// bits instead of a vertex's number.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "vsplit/progressive_mesh.hpp"
+
+namespace vsplit {
+
+struct Sweep {
+    struct Step {
+        std::uint32_t split;    ///< In the record.
+        std::uint32_t primary;  ///< The written number of its first parent; kNoVertex if it has none.
+    };
+    std::vector<Step>
+        steps;  ///< Those with parents, in the order in which an AskList comes to these; then those without.
+    float error = 0;  ///< Of the mesh before the sweep: of the first split not made yet.
+};
+
+/// Every split once. Two splits keep their order if one acts on a vertex (splits or moves it) in the star of
+/// a vertex that the other acts on; all others may change places, which leaves the mesh around each as it
+/// was. `traded` tells of each vertex of the record whether it keeps its parent's number when it is born, and
+/// the parent gets the new one. `mesh` must be sound.
+std::vector<Sweep> schedule(const ProgressiveMesh& mesh, const std::vector<bool>& traded);
+
+}  // namespace vsplit

@@ -1,0 +1,319 @@
+// SPDX-FileCopyrightText: 2026 The vsplit authors
+// SPDX-License-Identifier: MIT
+#include "split_codec.hpp"
+
+#include <algorithm>
+#include <bit>
+
+#include "place_fit.hpp"
+
+namespace vsplit {
+namespace {
+
+bool same_rotated(const Triangle& a, const Triangle& b) {
+    for (std::size_t k = 0; k < 3; ++k)
+        if (a[0] == b[k] && a[1] == b[(k + 1) % 3] && a[2] == b[(k + 2) % 3]) return true;
+    return false;
+}
+
+}  // namespace
+
+void SplitPlan::clear() {
+    births.clear();
+    taken.clear();
+    triangles.clear();
+    groups.clear();
+    sources.clear();
+    moves.clear();
+    birth_values.clear();
+    move_values.clear();
+}
+
+SplitCodec::SplitCodec(const StreamShape& shape, const PlaceWeights& weights)
+    : shape_(shape),
+      place_(weights),
+      error_bits_(std::bit_cast<std::uint32_t>(std::numeric_limits<float>::max())) {
+    value_.resize(shape.stride());
+    predicted_.resize(shape.stride());
+    scales_.resize(shape.stride());
+}
+
+// ---- Sweeps
+
+template <class Coder>
+const char* SplitCodec::code_head(Coder& coder, SweepHead& head) {
+    head.marked = marked_.code(coder, head.marked);
+    head.unmarked = unmarked_.code(coder, head.unmarked);
+    const std::uint32_t fall = error_.code(coder, error_bits_ - head.error_bits);
+    if (fall > error_bits_) return "a sweep's error is negative";
+    head.error_bits = error_bits_ -= fall;
+    const std::uint32_t alive = live.vertex_count();
+    if (head.marked == 0 && head.unmarked == 0) return "a sweep is empty";
+    ++sweep_;
+    cursor_ = 0;
+    asks_.begin(alive);
+    sparse_ = std::uint64_t{head.marked} * 64 < alive;
+    return nullptr;
+}
+
+template <class Coder>
+bool SplitCodec::ask(Coder& coder, std::uint32_t v, bool splits) {
+    const LiveVertex& vertex = live.vertices[v];
+    const Lattice3 bump = live.bump(v);
+    std::uint64_t squared = 1;
+    for (const std::int32_t b : bump) squared += static_cast<std::uint64_t>(std::int64_t{b} * b);
+    const std::int32_t size = log2_fixed(squared);
+    const std::size_t valence = std::clamp<std::uint32_t>(vertex.star, 3, 10) - 3;
+    const std::size_t touched = std::min(sweep_ - vertex.touched, 2u),
+                      acted = std::min(sweep_ - vertex.acted, 2u);
+    const std::size_t age = (touched * 3 + acted) * 2 + (asks_.round() > 0);
+    const auto bumpy = static_cast<std::size_t>(std::clamp((size - split_size_ + 6 * 256) >> 8, 0, 9));
+    const bool answer = coder.bit(mark_[(valence * 18 + age) * 10 + bumpy], splits);
+    if (answer) split_size_ += (size - split_size_) >> 5;
+    return answer;
+}
+
+template <class Coder>
+const char* SplitCodec::code_mark(Coder& coder, std::uint32_t& primary) {
+    if (sparse_) {
+        // Round the vertices, from the last one on.
+        const std::uint32_t gap = gap_.code(
+            coder, primary >= cursor_ ? primary - cursor_ : primary + live.vertex_count() - cursor_);
+        if (gap >= live.vertex_count()) return "a sweep marks a vertex that does not exist";
+        primary = gap < live.vertex_count() - cursor_ ? cursor_ + gap : gap - (live.vertex_count() - cursor_);
+        cursor_ = primary;
+        return nullptr;
+    }
+    for (std::uint32_t v; (v = asks_.next()) != kNoVertex;) {
+        if (ask(coder, v, v == primary)) {
+            primary = v;
+            return nullptr;
+        }
+    }
+    return "a sweep marks fewer vertices than it announces";
+}
+
+// ---- A split
+
+template <class Coder>
+const char* SplitCodec::code_split(Coder& coder, std::uint32_t primary, const SplitPlan& wanted,
+                                   SplitPlan& out) {
+    out.clear();
+    implied_triangles_.clear();
+    implied_groups_.clear();
+    const bool marked = primary != kNoVertex;
+    auto births = static_cast<std::uint32_t>(wanted.births.size());
+    births = coder.bit(one_birth_[marked], births == 1) ? 1 : births_.code(coder, births);
+    if (marked && births == 0) return "a marked split bears no vertex";
+    if (Coder::kDecodes && births > room.vertices) return "a block bears more vertices than it announces";
+    for (std::size_t i = 0; i < births; ++i) {
+        if (const char* fault = code_birth(coder, primary, i, wanted, out)) return fault;
+        if (coder.overrun()) return "a block ends within a split";
+    }
+    if (Coder::kDecodes && births > 1) {
+        scratch_ = out.taken;
+        std::sort(scratch_.begin(), scratch_.end());
+        if (std::adjacent_find(scratch_.begin(), scratch_.end()) != scratch_.end())
+            return "two births take one corner";
+    }
+    if (const char* fault = code_extra_moves(coder, wanted, out)) return fault;
+    if (const char* fault = code_triangles(coder, wanted, out)) return fault;
+    if (Coder::kDecodes && (out.taken.size() > room.corners || out.triangles.size() > room.triangles ||
+                            out.moves.size() > room.moves))
+        return "a split has more parts than its block announces";
+    return nullptr;
+}
+
+template <class Coder>
+const char* SplitCodec::code_birth(Coder& coder, std::uint32_t primary, std::size_t index,
+                                   const SplitPlan& wanted, SplitPlan& out) {
+    out.births.emplace_back();
+    if (const char* fault = code_parent(coder, primary, wanted, index, out)) return fault;
+    const std::uint32_t parent = out.births[index].parent;
+    is_run_ = false;
+    bool moves = false;
+    std::size_t move = 0;
+    if (parent != kNoVertex) {
+        if (const char* fault = code_taken(coder, wanted, index, out)) return fault;
+        const auto is_parent = [&](const SplitPlan::Birth& birth) { return birth.parent == parent; };
+        if (std::none_of(out.births.begin(), out.births.end() - 1, is_parent)) {
+            if (!Coder::kDecodes)
+                while (move < wanted.moves.size() && wanted.moves[move].vertex != parent) ++move;
+            const std::size_t kind = index == 0 ? 0 : out.moves.empty() ? 1 : 2;
+            moves = coder.bit(moved_[kind], move < wanted.moves.size());
+        }
+    }
+    out.births[index].taken_end = static_cast<std::uint32_t>(out.taken.size());
+    code_birth_place(coder, wanted, index, moves, out);
+    if (moves) code_move(coder, wanted, move, parent, is_run_, out);
+    return nullptr;
+}
+
+template <class Coder>
+const char* SplitCodec::code_parent(Coder& coder, std::uint32_t primary, const SplitPlan& wanted,
+                                    std::size_t index, SplitPlan& out) {
+    std::uint32_t& parent = out.births[index].parent;
+    if (index == 0 && primary != kNoVertex) {
+        parent = primary;
+        return nullptr;
+    }
+    enum : std::uint32_t { kNone, kTwin, kEarlier, kFar };
+    constexpr std::uint32_t kTwins = 64;
+    std::uint32_t kind = kNone, which = 0;
+    const std::uint32_t alive = live.vertex_count();
+    if (!Coder::kDecodes && wanted.births[index].parent != kNoVertex) {
+        const std::uint32_t asked = wanted.births[index].parent;
+        kind = kFar;
+        which = alive - 1 - asked;
+        for (std::size_t i = 0; i < index && kind == kFar; ++i)
+            if (out.births[i].parent == asked) kind = kEarlier, which = static_cast<std::uint32_t>(i);
+        if (kind == kFar && primary != kNoVertex) {
+            std::uint32_t twin = live.vertices[primary].twin;
+            for (std::uint32_t i = 0; i < kTwins && twin != primary; ++i, twin = live.vertices[twin].twin)
+                if (twin == asked) {
+                    kind = kTwin, which = i;
+                    break;
+                }
+        }
+    }
+    kind = parent_kind_.code(coder, kind);
+    if (kind == kNone) return nullptr;
+    if (primary == kNoVertex) return "a split without a parent has one";
+    if (kind == kTwin) {
+        which = twin_.code(coder, which);
+        if (which >= kTwins) return "a twin is too far";
+        parent = live.vertices[primary].twin;
+        for (; which > 0; --which) parent = live.vertices[parent].twin;
+    } else if (kind == kEarlier) {
+        which = births_.code(coder, which);
+        if (which >= index) return "a birth shares the parent of a later one";
+        parent = out.births[which].parent;
+        if (parent == kNoVertex) return "a birth shares a parent that is none";
+    } else {
+        which = far_.code(coder, which);
+        if (which >= alive) return "a birth has a parent before the first vertex";
+        parent = alive - 1 - which;
+    }
+    return nullptr;
+}
+
+bool SplitCodec::find_cut(std::span<const std::uint32_t> taken, const SplitPlan& wanted, std::uint32_t child,
+                          Cut& cut) const {
+    const std::uint32_t n = star_.size, k = static_cast<std::uint32_t>(taken.size());
+    std::uint32_t in = 0;
+    for (std::uint32_t i = 0; i < n; ++i)
+        for (const std::uint32_t corner : taken)
+            if (corner / 3 == star_.sector[i]) in |= 1u << i;
+    const auto has = [&](std::uint32_t i) { return (in >> i & 1) != 0; };
+    const auto born = [&](const Triangle& triangle) {
+        return std::any_of(wanted.triangles.begin(), wanted.triangles.end(),
+                           [&](const Triangle& t) { return same_rotated(t, triangle); });
+    };
+    cut.length = k;
+    cut.begin = 0;
+    if (star_.closed) {
+        if (k == 0 || k == n) return false;
+        while (!(has(cut.begin) && !has((cut.begin + n - 1) % n))) ++cut.begin;
+        for (std::uint32_t i = 0; i < k; ++i)
+            if (!has((cut.begin + i) % n)) return false;
+        cut.first_wing = cut.last_wing = true;
+        return true;
+    }
+    const std::uint32_t p = star_.centre;
+    if (k == 0) {
+        cut.last_wing = born({child, star_.ring[0], p});
+        cut.first_wing = !cut.last_wing && born({child, p, star_.ring[n]});
+        if (cut.first_wing) cut.begin = n;
+        return cut.last_wing || cut.first_wing;
+    }
+    while (!has(cut.begin)) ++cut.begin;
+    for (std::uint32_t i = 0; i < k; ++i)
+        if (!has(cut.begin + i)) return false;
+    const bool first = born({child, p, star_.ring[cut.begin]}),
+               last = born({child, star_.ring[cut.begin + k], p});
+    cut.first_wing = cut.last_wing = true;
+    if (last && !first && cut.begin == 0) cut.first_wing = false;
+    if (first && !last && cut.begin + k == n) cut.last_wing = false;
+    return true;
+}
+
+void SplitCodec::take_run(std::uint32_t child, SplitPlan& out) {
+    const std::uint32_t n = star_.size, p = star_.centre, begin = run_.begin, end = begin + run_.length;
+    const std::size_t before = out.taken.size();
+    for (std::uint32_t i = begin; i < end; ++i) {
+        const std::uint32_t t = star_.sector[i >= n ? i - n : i];
+        const Triangle& c = live.triangles[t];
+        out.taken.push_back(3 * t + (c[0] == p ? 0u : c[1] == p ? 1u : 2u));
+    }
+    std::sort(out.taken.begin() + static_cast<std::ptrdiff_t>(before), out.taken.end());
+    const auto group_of = [&](std::uint32_t i) {
+        return groups.empty() ? 0 : groups[star_.sector[star_.closed && i >= n ? i - n : i]];
+    };
+    if (run_.last_wing) {
+        implied_triangles_.push_back({child, star_.ring_at(end >= n && star_.closed ? end - n : end), p});
+        implied_groups_.push_back(group_of(end > 0 ? end - 1 : 0));
+    }
+    if (run_.first_wing) {
+        implied_triangles_.push_back({child, p, star_.ring[begin]});
+        implied_groups_.push_back(group_of(begin < n ? begin : n - 1));
+    }
+    // The rings around the child and around what the parent keeps, without each other.
+    child_ring_.size = parent_ring_.size = 0;
+    for (std::uint32_t i = begin; i <= end; ++i)
+        child_ring_.vertex[child_ring_.size++] = star_.ring[star_.closed && i >= n ? i - n : i];
+    child_ring_.open = !(run_.first_wing && run_.last_wing);
+    parent_ring_.open = !star_.closed;
+    if (star_.closed) {
+        for (std::uint32_t i = end; i <= begin + n; ++i)
+            parent_ring_.vertex[parent_ring_.size++] = star_.ring[i % n];
+    } else {
+        for (std::uint32_t i = run_.last_wing ? end : n + 1; i <= n; ++i)
+            parent_ring_.vertex[parent_ring_.size++] = star_.ring[i];
+        for (std::uint32_t i = 0; i < (run_.first_wing ? begin + 1 : 0); ++i)
+            parent_ring_.vertex[parent_ring_.size++] = star_.ring[i];
+    }
+}
+
+template <class Coder>
+const char* SplitCodec::code_taken(Coder& coder, const SplitPlan& wanted, std::size_t index, SplitPlan& out) {
+    live.gather(out.births[index].parent, star_);
+    std::span<const std::uint32_t> taken;
+    if (!Coder::kDecodes) {
+        const std::uint32_t begin = index == 0 ? 0 : wanted.births[index - 1].taken_end;
+        taken = std::span(wanted.taken).subspan(begin, wanted.births[index].taken_end - begin);
+    }
+    if (star_.fan) {
+        Cut cut;
+        is_run_ = coder.bit(regular_[star_.closed],
+                            !Coder::kDecodes && find_cut(taken, wanted, birth_id(index), cut));
+        if (is_run_) {
+            run_ = cut_.code(coder, live, star_, cut);
+            take_run(birth_id(index), out);
+            return Coder::kDecodes && out.taken.size() > room.corners
+                       ? "a block changes more corners than it announces"
+                       : nullptr;
+        }
+        std::sort(star_.corners.begin(), star_.corners.end());
+    }
+    // Any corners of the star. Vast stars pay a whole bit each, so that work stays in proportion to bytes.
+    for (const std::uint32_t corner : star_.corners) {
+        const bool is_taken = !Coder::kDecodes && std::binary_search(taken.begin(), taken.end(), corner);
+        if (star_.size > 64 ? coder.raw(1, is_taken) != 0 : coder.bit(in_mask_, is_taken)) {
+            if (Coder::kDecodes && out.taken.size() >= room.corners)
+                return "a block changes more corners than it announces";
+            out.taken.push_back(corner);
+        }
+    }
+    return nullptr;
+}
+
+#define VSPLIT_INSTANTIATE(Coder)                                       \
+    template const char* SplitCodec::code_head(Coder&, SweepHead&);     \
+    template const char* SplitCodec::code_mark(Coder&, std::uint32_t&); \
+    template const char* SplitCodec::code_split(Coder&, std::uint32_t, const SplitPlan&, SplitPlan&);
+VSPLIT_INSTANTIATE(RangeEncoder)
+VSPLIT_INSTANTIATE(RangeDecoder)
+VSPLIT_INSTANTIATE(NoCoder)
+#undef VSPLIT_INSTANTIATE
+
+}  // namespace vsplit

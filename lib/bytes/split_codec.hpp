@@ -1,0 +1,187 @@
+// SPDX-FileCopyrightText: 2026 The vsplit authors
+// SPDX-License-Identifier: MIT
+//
+// One vertex split after the other, to bits and back: encoder and decoder run the same code over the same
+// live mesh (formats/spec/pmesh-1.md, section Splits).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "ask_list.hpp"
+#include "cut_model.hpp"
+#include "live_stars.hpp"
+#include "number_models.hpp"
+#include "place_model.hpp"
+
+namespace vsplit {
+
+/// A split in whole numbers: what the stream says of it.
+struct SplitPlan {
+    struct Birth {
+        std::uint32_t parent = kNoVertex;
+        Lattice3 at{};
+        std::array<std::uint32_t, 3>
+            finer{};  ///< zigzag of the float's distance from its lattice point's, if lossless.
+        std::uint32_t taken_end = 0;  ///< In `taken`.
+    };
+    struct Move {
+        std::uint32_t vertex = 0;
+        Lattice3 at{};
+        std::array<std::uint32_t, 3> finer{};
+    };
+    std::vector<Birth> births;
+    std::vector<std::uint32_t> taken;  ///< Corners that go over to the births, ascending within each.
+    std::vector<Triangle> triangles;
+    std::vector<std::uint32_t> groups;   ///< Of the new triangles, if the mesh has groups.
+    std::vector<std::uint32_t> sources;  ///< Encoder: the place of each new triangle in the plan asked for.
+    std::vector<Move> moves;
+    std::vector<std::int32_t> birth_values,
+        move_values;  ///< Attributes (and weight) of each, if there are any.
+
+    void clear();
+};
+
+/// What of a mesh the stream holds.
+struct StreamShape {
+    bool lossless = false;
+    std::uint32_t group_bits = 0;  ///< Digits of the largest group; 0: no groups.
+    std::vector<bool> mixes;       ///< Per number of a vertex beside its place: may neighbours be averaged?
+    std::size_t stride() const { return mixes.size(); }
+};
+
+/// The beginning of a sweep: every vertex in turn, those just born too, is asked whether it splits, and again
+/// after it did.
+struct SweepHead {
+    std::uint32_t marked = 0;    ///< Splits found by their first parent, in its order.
+    std::uint32_t unmarked = 0;  ///< Splits without parents, after them.
+    std::uint32_t error_bits = 0;
+};
+
+/// How much a stream may still make: what the table announces of its block, less what is made.
+struct StreamRoom {
+    std::uint64_t vertices = 0, triangles = 0, corners = 0, moves = 0;
+};
+
+/// Learns what weights predict best; the encoder's first pass.
+class PlaceFit;
+
+class SplitCodec {
+  public:
+    SplitCodec(const StreamShape& shape, const PlaceWeights& weights);
+
+    LiveStars live;
+    std::vector<std::int32_t> values;  ///< stride numbers a vertex, as they are now.
+    std::vector<std::uint32_t> groups;
+    std::vector<std::array<std::uint32_t, 3>> finer;  ///< One a vertex, if lossless.
+    StreamRoom room;                                  ///< Decoder: what is left of the block.
+    PlaceFit* fit = nullptr;                          ///< Encoder: told of every place that was predicted.
+
+    /// What Draco's bytes do not hold of the base mesh. With triangles, `live` has its vertices and they;
+    /// without, its vertices with their places to come. `values`, `finer` and `groups` are filled in order.
+    template <class Coder>
+    void code_base(Coder& coder);
+
+    template <class Coder>
+    const char* code_head(Coder& coder, SweepHead& head);
+    /// The first parent of the next marked split.
+    template <class Coder>
+    const char* code_mark(Coder& coder, std::uint32_t& primary);
+    /// A split as asked for in `wanted` (encoder) or as the stream has it; `out` is what was coded, in the
+    /// canonical order. The reason if the stream contradicts itself.
+    template <class Coder>
+    const char* code_split(Coder& coder, std::uint32_t primary, const SplitPlan& wanted, SplitPlan& out);
+    /// Makes the split in the live mesh.
+    void apply(const SplitPlan& plan);
+
+    const StreamShape& shape() const { return shape_; }
+
+  private:
+    static constexpr std::size_t kValueScales = 14;
+    struct ValueModel {
+        std::array<NumberModel, kValueScales> by_scale;
+    };
+
+    template <class Coder>
+    const char* code_birth(Coder& coder, std::uint32_t primary, std::size_t index, const SplitPlan& wanted,
+                           SplitPlan& out);
+    template <class Coder>
+    const char* code_parent(Coder& coder, std::uint32_t primary, const SplitPlan& wanted, std::size_t index,
+                            SplitPlan& out);
+    template <class Coder>
+    const char* code_taken(Coder& coder, const SplitPlan& wanted, std::size_t index, SplitPlan& out);
+    template <class Coder>
+    void code_birth_place(Coder& coder, const SplitPlan& wanted, std::size_t index, bool moving,
+                          SplitPlan& out);
+    template <class Coder>
+    void code_move(Coder& coder, const SplitPlan& wanted, std::size_t which, std::uint32_t vertex,
+                   bool guided, SplitPlan& out);
+    template <class Coder>
+    const char* code_extra_moves(Coder& coder, const SplitPlan& wanted, SplitPlan& out);
+    template <class Coder>
+    const char* code_triangles(Coder& coder, const SplitPlan& wanted, SplitPlan& out);
+    template <class Coder>
+    const char* code_triangle(Coder& coder, const SplitPlan& out, const Triangle& wanted, Triangle& triangle);
+    template <class Coder>
+    void code_group(Coder& coder, std::uint32_t predicted, std::uint32_t wanted, SplitPlan& out);
+    template <class Coder>
+    void code_finer(Coder& coder, const std::array<std::uint32_t, 3>& wanted,
+                    std::array<std::uint32_t, 3>& out);
+    template <class Coder>
+    void code_values(Coder& coder, const std::int32_t* wanted, std::vector<std::int32_t>& out);
+
+    template <class Coder>
+    bool ask(Coder& coder, std::uint32_t v, bool splits);
+    /// The run that a set of corners is, if it is one that CutModel codes.
+    bool find_cut(std::span<const std::uint32_t> taken, const SplitPlan& wanted, std::uint32_t child,
+                  Cut& cut) const;
+    void take_run(std::uint32_t child, SplitPlan& out);
+    void predict_values(std::uint32_t parent, const SplitPlan& out);
+    std::uint32_t birth_id(std::size_t index) const {
+        return live.vertex_count() + static_cast<std::uint32_t>(index);
+    }
+
+    StreamShape shape_;
+    CutModel cut_;
+    PlaceModel place_;
+
+    // Sweeps.
+    AskList asks_;
+    std::uint32_t sweep_ = 0, cursor_ = 0;
+    bool sparse_ = false;
+    std::uint32_t error_bits_;
+    std::int32_t split_size_ = 0;
+    std::array<BitModel, 8 * 18 * 10> mark_;
+    NumberModel marked_, unmarked_, error_, gap_;
+
+    // Splits.
+    std::array<BitModel, 2> one_birth_, regular_, implied_, place_moves_, same_move_, same_place_,
+        group_stays_;
+    std::array<BitModel, 3> moved_;
+    std::array<BitModel, 2> twin_moved_;
+    BitModel in_mask_;
+    NumberModel births_, twin_, far_, moves_, moved_far_, extra_, corner_birth_, corner_parent_, corner_ring_,
+        corner_far_;
+    SymbolModel<2> parent_kind_, corner_kind_;
+    std::array<NumberModel, 3> finer_;
+    std::vector<ValueModel> value_;
+
+    // The birth at hand.
+    Star star_;
+    Cut run_;
+    bool is_run_ = false;
+    Ring child_ring_, parent_ring_;
+    PlaceGuides guides_;
+    std::vector<Triangle> implied_triangles_;
+    std::vector<std::uint32_t> implied_groups_, near_, scratch_, touched_;
+    std::vector<std::int32_t> predicted_;
+    std::vector<std::uint32_t> scales_;
+    std::vector<bool> used_;
+    Lattice3 last_place_{};
+    std::uint32_t last_group_ = 0;
+};
+
+}  // namespace vsplit

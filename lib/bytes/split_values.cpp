@@ -1,0 +1,432 @@
+// SPDX-FileCopyrightText: 2026 The vsplit authors
+// SPDX-License-Identifier: MIT
+//
+// The second half of SplitCodec: places, moves, new triangles, attributes, and what a split does.
+#include <algorithm>
+
+#include "place_fit.hpp"
+#include "split_codec.hpp"
+
+namespace vsplit {
+namespace {
+
+std::uint32_t zigzag(std::uint32_t difference) {
+    return (difference << 1) ^ (0u - (difference >> 31));
+}
+std::uint32_t unzigzag(std::uint32_t code) {
+    return (code >> 1) ^ (0u - (code & 1));
+}
+
+bool same_rotated(const Triangle& a, const Triangle& b) {
+    for (std::size_t k = 0; k < 3; ++k)
+        if (a[0] == b[k] && a[1] == b[(k + 1) % 3] && a[2] == b[(k + 2) % 3]) return true;
+    return false;
+}
+
+}  // namespace
+
+// ---- Places
+
+template <class Coder>
+void SplitCodec::code_finer(Coder& coder, const std::array<std::uint32_t, 3>& wanted,
+                            std::array<std::uint32_t, 3>& out) {
+    if (shape_.lossless)
+        for (std::size_t i = 0; i < 3; ++i) out[i] = finer_[i].code(coder, wanted[i]);
+}
+
+template <class Coder>
+void SplitCodec::code_birth_place(Coder& coder, const SplitPlan& wanted, std::size_t index, bool moving,
+                                  SplitPlan& out) {
+    static const SplitPlan::Birth kNothing;
+    const SplitPlan::Birth& asked = Coder::kDecodes ? kNothing : wanted.births[index];
+    SplitPlan::Birth& birth = out.births[index];
+    const SplitPlan::Birth& first = out.births[0];
+    const bool has_parent = birth.parent != kNoVertex;
+    if (index > 0 && coder.bit(same_place_[has_parent], asked.at == first.at && asked.finer == first.finer)) {
+        birth.at = first.at;
+        birth.finer = first.finer;
+    } else {
+        if (is_run_) {
+            guides_ = place_.guide_birth(live, birth.parent, child_ring_, moving);
+            birth.at = place_.code(coder, guides_, asked.at);
+            if (!Coder::kDecodes && fit) fit->add(guides_, birth.at);
+        } else {
+            birth.at =
+                place_.code_free(coder, has_parent ? live.vertices[birth.parent].at : last_place_, asked.at);
+        }
+        code_finer(coder, asked.finer, birth.finer);
+    }
+    last_place_ = birth.at;
+    if (shape_.stride() > 0) {
+        predict_values(birth.parent, out);
+        code_values(coder, Coder::kDecodes ? nullptr : wanted.birth_values.data() + index * shape_.stride(),
+                    out.birth_values);
+    }
+}
+
+template <class Coder>
+void SplitCodec::code_move(Coder& coder, const SplitPlan& wanted, std::size_t which, std::uint32_t vertex,
+                           bool guided, SplitPlan& out) {
+    static const SplitPlan::Move kNothing;
+    const SplitPlan::Move& asked = Coder::kDecodes ? kNothing : wanted.moves[which];
+    SplitPlan::Move move;
+    move.vertex = vertex;
+    const Lattice3& now = live.vertices[vertex].at;
+    const std::array<std::uint32_t, 3> finer_now = shape_.lossless ? finer[vertex] : move.finer;
+    const bool again =
+        !out.moves.empty() &&
+        coder.bit(same_move_[guided], asked.at == out.moves[0].at && asked.finer == out.moves[0].finer);
+    if (again) {
+        move.at = out.moves[0].at;
+        move.finer = out.moves[0].finer;
+    } else if (coder.bit(place_moves_[guided], asked.at != now || asked.finer != finer_now)) {
+        if (guided) {
+            PlaceGuides guides = place_.guide_move(live, vertex, parent_ring_, out.births.back().at);
+            move.at = place_.code(coder, guides, asked.at);
+            if (!Coder::kDecodes && fit) fit->add(guides, move.at);
+        } else {
+            move.at = place_.code_free(coder, now, asked.at);
+        }
+        code_finer(coder, asked.finer, move.finer);
+    } else {
+        move.at = now;
+        move.finer = finer_now;
+    }
+    out.moves.push_back(move);
+    const std::size_t stride = shape_.stride();
+    if (stride > 0) {
+        for (std::size_t i = 0; i < stride; ++i) predicted_[i] = values[vertex * stride + i], scales_[i] = 0;
+        code_values(coder, Coder::kDecodes ? nullptr : wanted.move_values.data() + which * stride,
+                    out.move_values);
+    }
+}
+
+template <class Coder>
+const char* SplitCodec::code_extra_moves(Coder& coder, const SplitPlan& wanted, SplitPlan& out) {
+    const auto place_of = [&](std::uint32_t vertex) {
+        std::size_t i = 0;
+        while (i < wanted.moves.size() && wanted.moves[i].vertex != vertex) ++i;
+        return i;
+    };
+    // Twins of the first parent usually go where it goes.
+    const std::uint32_t primary = out.births.empty() ? kNoVertex : out.births[0].parent;
+    if (primary != kNoVertex) {
+        const bool moves = !out.moves.empty() && out.moves[0].vertex == primary;
+        std::uint32_t twin = live.vertices[primary].twin;
+        for (int i = 0; i < 64 && twin != primary; ++i, twin = live.vertices[twin].twin) {
+            const bool parent = std::any_of(out.births.begin(), out.births.end(),
+                                            [&](const SplitPlan::Birth& b) { return b.parent == twin; });
+            if (parent) continue;
+            const std::size_t which = Coder::kDecodes ? 0 : place_of(twin);
+            if (coder.bit(twin_moved_[moves], which < wanted.moves.size()))
+                code_move(coder, wanted, which, twin, false, out);
+            if (Coder::kDecodes && out.moves.size() > room.moves)
+                return "a block moves more vertices than it announces";
+        }
+    }
+    const std::uint32_t more = moves_.code(
+        coder,
+        static_cast<std::uint32_t>(wanted.moves.size() - std::min(wanted.moves.size(), out.moves.size())));
+    if (Coder::kDecodes && out.moves.size() + std::uint64_t{more} > room.moves)
+        return "a block moves more vertices than it announces";
+    const std::uint32_t alive = live.vertex_count();
+    std::size_t next = 0;
+    for (std::uint32_t i = 0; i < more; ++i, ++next) {
+        const auto coded = [&](std::uint32_t vertex) {
+            return std::any_of(out.moves.begin(), out.moves.end(),
+                               [&](const SplitPlan::Move& m) { return m.vertex == vertex; });
+        };
+        std::uint32_t vertex = 0;
+        if (!Coder::kDecodes) {
+            while (coded(wanted.moves[next].vertex)) ++next;
+            vertex = wanted.moves[next].vertex;
+        }
+        vertex = alive - 1 - moved_far_.code(coder, alive - 1 - vertex);
+        if (vertex >= alive) return "a move names a vertex that does not exist";
+        code_move(coder, wanted, next, vertex, false, out);
+        if (coder.overrun()) return "a block ends within a split";
+    }
+    return nullptr;
+}
+
+// ---- Triangles
+
+template <class Coder>
+void SplitCodec::code_group(Coder& coder, std::uint32_t predicted, std::uint32_t wanted, SplitPlan& out) {
+    if (shape_.group_bits == 0) return;
+    if (!coder.bit(group_stays_[0], wanted == predicted)) predicted = coder.raw(shape_.group_bits, wanted);
+    last_group_ = predicted;
+    out.groups.push_back(predicted);
+}
+
+template <class Coder>
+const char* SplitCodec::code_triangle(Coder& coder, const SplitPlan& out, const Triangle& wanted,
+                                      Triangle& triangle) {
+    enum : std::uint32_t { kBorn, kParent, kNear, kFar };
+    const std::uint32_t alive = live.vertex_count(), births = static_cast<std::uint32_t>(out.births.size());
+    for (std::size_t k = 0; k < 3; ++k) {
+        std::uint32_t kind = kFar, which = 0;
+        if (!Coder::kDecodes) {
+            const std::uint32_t v = wanted[k];
+            const auto parent = std::find_if(out.births.begin(), out.births.end(),
+                                             [&](const SplitPlan::Birth& b) { return b.parent == v; });
+            const auto near = std::lower_bound(near_.begin(), near_.end(), v);
+            if (v >= alive) {
+                kind = kBorn, which = births - 1 - (v - alive);
+            } else if (parent != out.births.end()) {
+                kind = kParent, which = static_cast<std::uint32_t>(parent - out.births.begin());
+            } else if (near != near_.end() && *near == v) {
+                kind = kNear, which = static_cast<std::uint32_t>(near - near_.begin());
+            } else {
+                which = alive - 1 - v;
+            }
+        }
+        kind = corner_kind_.code(coder, kind);
+        if (kind == kBorn) {
+            which = corner_birth_.code(coder, which);
+            if (which >= births) return "a new triangle names a birth that does not exist";
+            triangle[k] = alive + births - 1 - which;
+        } else if (kind == kParent) {
+            which = corner_parent_.code(coder, which);
+            if (which >= births || out.births[which].parent == kNoVertex)
+                return "a new triangle names a parent that does not exist";
+            triangle[k] = out.births[which].parent;
+        } else if (kind == kNear) {
+            which = corner_ring_.code(coder, which);
+            if (which >= near_.size()) return "a new triangle names a neighbour that does not exist";
+            triangle[k] = near_[which];
+        } else {
+            which = corner_far_.code(coder, which);
+            if (which >= alive) return "a new triangle names a vertex that does not exist";
+            triangle[k] = alive - 1 - which;
+        }
+    }
+    if (triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0])
+        return "a new triangle names a vertex twice";
+    return nullptr;
+}
+
+template <class Coder>
+const char* SplitCodec::code_triangles(Coder& coder, const SplitPlan& wanted, SplitPlan& out) {
+    // Encoder: which of the triangles asked for are the implied ones?
+    used_.assign(wanted.triangles.size(), false);
+    bool all = true;
+    if (!Coder::kDecodes)
+        for (const Triangle& implied : implied_triangles_) {
+            std::uint32_t i = 0;
+            while (i < wanted.triangles.size() && (used_[i] || !same_rotated(wanted.triangles[i], implied)))
+                ++i;
+            if (i == wanted.triangles.size()) {
+                all = false;
+                break;
+            }
+            used_[i] = true;
+            out.sources.push_back(i);
+        }
+    if (!implied_triangles_.empty()) {
+        all = coder.bit(implied_[0], all);
+        if (!Coder::kDecodes && !all) {
+            out.sources.clear();
+            used_.assign(wanted.triangles.size(), false);
+        }
+        if (all) {
+            out.triangles = implied_triangles_;
+            for (std::size_t i = 0; i < implied_triangles_.size(); ++i)
+                code_group(coder, implied_groups_[i],
+                           Coder::kDecodes || wanted.groups.empty() ? 0 : wanted.groups[out.sources[i]], out);
+        }
+    }
+    const std::uint32_t more = extra_.code(
+        coder,
+        static_cast<std::uint32_t>(wanted.triangles.size() - (Coder::kDecodes ? 0 : out.triangles.size())));
+    if (Coder::kDecodes && out.triangles.size() + std::uint64_t{more} > room.triangles)
+        return "a block bears more triangles than it announces";
+    if (more == 0) return nullptr;
+    near_.clear();
+    if (!out.births.empty() && out.births[0].parent != kNoVertex) {
+        live.gather_corners(out.births[0].parent, scratch_);
+        for (const std::uint32_t corner : scratch_)
+            for (const std::uint32_t v : live.triangles[corner / 3])
+                if (v != out.births[0].parent) near_.push_back(v);
+        std::sort(near_.begin(), near_.end());
+        near_.erase(std::unique(near_.begin(), near_.end()), near_.end());
+    }
+    std::uint32_t next = 0;
+    for (std::uint32_t i = 0; i < more; ++i, ++next) {
+        Triangle asked{}, triangle{};
+        std::uint32_t group = 0;
+        if (!Coder::kDecodes) {
+            while (used_[next]) ++next;
+            asked = wanted.triangles[next];
+            if (!wanted.groups.empty()) group = wanted.groups[next];
+            out.sources.push_back(next);
+        }
+        if (const char* fault = code_triangle(coder, out, asked, triangle)) return fault;
+        out.triangles.push_back(triangle);
+        code_group(coder, last_group_, group, out);
+        if (coder.overrun()) return "a block ends within a split";
+    }
+    return nullptr;
+}
+
+// ---- Attributes
+
+void SplitCodec::predict_values(std::uint32_t parent, const SplitPlan& out) {
+    const std::size_t stride = shape_.stride();
+    for (std::size_t i = 0; i < stride; ++i) {
+        scales_[i] = 0;
+        if (parent == kNoVertex) {
+            const auto& before = out.birth_values.empty() ? values : out.birth_values;
+            predicted_[i] = before.empty() ? 0 : before[before.size() - stride + i];
+            continue;
+        }
+        const std::int64_t own = values[parent * stride + i];
+        predicted_[i] = static_cast<std::int32_t>(own);
+        if (!is_run_ || !shape_.mixes[i]) continue;
+        std::int64_t sum = 0, spread = 0;
+        for (std::uint32_t j = 0; j < child_ring_.size; ++j) {
+            const std::int64_t d = values[child_ring_.vertex[j] * stride + i] - own;
+            sum += d;
+            spread += std::abs(d);
+        }
+        const std::uint32_t count = child_ring_.size + 1;
+        predicted_[i] = static_cast<std::int32_t>(own + ((mean16(sum, count) + 8) >> 4));
+        scales_[i] = std::min<std::uint32_t>(
+            (half_octave(static_cast<std::uint64_t>(mean16(spread, count))) + 1) / 2 + 1, kValueScales - 1);
+    }
+}
+
+template <class Coder>
+void SplitCodec::code_values(Coder& coder, const std::int32_t* wanted, std::vector<std::int32_t>& out) {
+    for (std::size_t i = 0; i < shape_.stride(); ++i) {
+        const auto from = static_cast<std::uint32_t>(predicted_[i]);
+        const std::uint32_t difference =
+            Coder::kDecodes ? 0 : zigzag(static_cast<std::uint32_t>(wanted[i]) - from);
+        const std::uint32_t read = value_[i].by_scale[scales_[i]].code(coder, difference);
+        out.push_back(static_cast<std::int32_t>(from + unzigzag(read)));
+    }
+}
+
+template <class Coder>
+void SplitCodec::code_base(Coder& coder) {
+    const std::size_t stride = shape_.stride();
+    const std::uint32_t count = live.vertex_count();
+    std::vector<std::int32_t> row;
+    for (std::uint32_t v = 0; v < count && !coder.overrun(); ++v) {
+        if (live.triangles.empty())
+            live.vertices[v].at =
+                place_.code_free(coder, v == 0 ? Lattice3{} : live.vertices[v - 1].at, live.vertices[v].at);
+        if (shape_.lossless) code_finer(coder, std::array<std::uint32_t, 3>(finer[v]), finer[v]);
+        for (std::size_t i = 0; i < stride; ++i) {
+            predicted_[i] = v == 0 ? 0 : values[(v - 1) * stride + i];
+            scales_[i] = 1;
+        }
+        row.clear();
+        code_values(coder, values.data() + v * stride, row);
+        std::copy(row.begin(), row.end(), values.begin() + static_cast<std::ptrdiff_t>(v * stride));
+    }
+    if (shape_.group_bits > 0) {
+        SplitPlan plan;
+        for (std::uint32_t& group : groups) {
+            if (coder.overrun()) break;
+            plan.groups.clear();
+            code_group(coder, last_group_, group, plan);
+            group = last_group_;
+        }
+    }
+    live.link_twins(0);
+}
+
+// ---- What a split does
+
+void SplitCodec::apply(const SplitPlan& plan) {
+    const std::size_t stride = shape_.stride();
+    const std::uint32_t first = live.vertex_count();
+    // Triangles whose places change: all around a vertex that moves, else those that are taken.
+    touched_.clear();
+    const auto touch_star = [&](std::uint32_t v) {
+        live.gather_corners(v, scratch_);
+        for (const std::uint32_t corner : scratch_) touched_.push_back(corner / 3);
+    };
+    for (const SplitPlan::Move& move : plan.moves)
+        if (live.vertices[move.vertex].at != move.at) touch_star(move.vertex);
+    const bool single = touched_.empty();
+    for (const std::uint32_t corner : plan.taken) touched_.push_back(corner / 3);
+    if (!single || plan.births.size() > 1) {
+        std::sort(touched_.begin(), touched_.end());
+        touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
+    }
+    for (const std::uint32_t t : touched_) live.weigh(t, -1);
+
+    for (std::size_t i = 0; i < plan.moves.size(); ++i) {
+        const SplitPlan::Move& move = plan.moves[i];
+        live.vertices[move.vertex].at = move.at;
+        if (shape_.lossless) finer[move.vertex] = move.finer;
+        std::copy_n(plan.move_values.begin() + static_cast<std::ptrdiff_t>(i * stride), stride,
+                    values.begin() + static_cast<std::ptrdiff_t>(move.vertex * stride));
+        live.vertices[move.vertex].acted = sweep_;
+        asks_.add(move.vertex);
+    }
+    values.insert(values.end(), plan.birth_values.begin(), plan.birth_values.end());
+    for (const SplitPlan::Birth& birth : plan.births) {
+        live.add_vertex(birth.at);
+        if (shape_.lossless) finer.push_back(birth.finer);
+    }
+    const auto touch_ring = [&](std::uint32_t v) {
+        live.vertices[v].acted = live.vertices[v].touched = sweep_;
+        asks_.add(v);
+        for (const std::uint32_t corner : scratch_)
+            for (const std::uint32_t w : live.triangles[corner / 3]) {
+                live.vertices[w].touched = sweep_;
+                asks_.add(w);
+            }
+    };
+    std::uint32_t begin = 0;
+    for (std::uint32_t i = 0; i < plan.births.size(); ++i) {
+        const SplitPlan::Birth& birth = plan.births[i];
+        const auto taken = std::span(plan.taken).subspan(begin, birth.taken_end - begin);
+        begin = birth.taken_end;
+        live.vertices[first + i].acted = live.vertices[first + i].touched = sweep_;
+        asks_.add(first + i);
+        if (birth.parent == kNoVertex) continue;
+        if (plan.births.size() == 1 && star_.centre == birth.parent)
+            scratch_ = star_.corners;  // as it was gathered for the cut
+        else
+            live.gather_corners(birth.parent, scratch_);
+        touch_ring(birth.parent);
+        for (const std::uint32_t corner : taken) live.hand_over(corner, first + i);
+        std::erase_if(scratch_, [&](std::uint32_t corner) {
+            return live.triangles[corner / 3][corner % 3] == first + i;
+        });
+        live.relink(birth.parent, scratch_);
+        live.relink(first + i, taken);
+    }
+    for (const SplitPlan::Move& move : plan.moves) {
+        live.gather_corners(move.vertex, scratch_);
+        touch_ring(move.vertex);
+    }
+    for (const std::uint32_t t : touched_) live.weigh(t, 1);
+    for (std::size_t i = 0; i < plan.triangles.size(); ++i) {
+        live.add_triangle(plan.triangles[i]);
+        if (shape_.group_bits > 0) groups.push_back(plan.groups[i]);
+        for (const std::uint32_t v : plan.triangles[i]) {
+            live.vertices[v].touched = sweep_;
+            asks_.add(v);
+        }
+    }
+    live.link_twins(first);
+}
+
+#define VSPLIT_INSTANTIATE(Coder)                                                                        \
+    template void SplitCodec::code_base(Coder&);                                                         \
+    template void SplitCodec::code_birth_place(Coder&, const SplitPlan&, std::size_t, bool, SplitPlan&); \
+    template void SplitCodec::code_move(Coder&, const SplitPlan&, std::size_t, std::uint32_t, bool,      \
+                                        SplitPlan&);                                                     \
+    template const char* SplitCodec::code_extra_moves(Coder&, const SplitPlan&, SplitPlan&);             \
+    template const char* SplitCodec::code_triangles(Coder&, const SplitPlan&, SplitPlan&);
+VSPLIT_INSTANTIATE(RangeEncoder)
+VSPLIT_INSTANTIATE(RangeDecoder)
+VSPLIT_INSTANTIATE(NoCoder)
+#undef VSPLIT_INSTANTIATE
+
+}  // namespace vsplit
