@@ -121,6 +121,9 @@ int BakeCommand::run_scene(bake::CollapseOptions options) const {
                             with_commas(triangles), scene->parts.size(), scene->primitives.size(),
                             scene->mesh.attributes.size(), scene->report.format));
     for (const std::string& line : describe(scene->report)) say(common, "  " + line);
+    if (const std::uint64_t dropped = result->report.degenerate_triangles)
+        say(common,
+            fmt::format("  {} triangles with two corners at one point, left out", with_commas(dropped)));
     say(common,
         fmt::format("{}: shows {} triangles (error {}), {} splits, {} bytes, {} of them stream, in {:.2f} s",
                     output.path, with_commas(shown.mesh.triangles.size()), short_number(error),
