@@ -181,12 +181,12 @@ TEST_CASE("Attributes: a texture stays where it is, and the charts keep their sh
 TEST_CASE("Attributes: the same for any number of threads, with either cost") {
     for (const bake::Cost cost : {bake::Cost::kQuadric, bake::Cost::kPaper}) {
         const Mesh mesh =
-            cost == bake::Cost::kPaper ? make_skinned_tube(60, 50) : make_skinned_tube(240, 200);
+            cost == bake::Cost::kPaper ? make_skinned_tube(60, 50) : make_skinned_tube(200, 170);
         bake::CollapseOptions options;
         options.cost = cost;
         options.calibrate = false;
         ProgressiveMesh first;
-        for (const std::size_t threads : {1u, 2u, 8u}) {
+        for (const std::size_t threads : {1u, 3u}) {
             const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
             auto result = bake::collapse(mesh, options);
             REQUIRE(result.ok());

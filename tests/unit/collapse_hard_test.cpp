@@ -82,13 +82,24 @@ Mesh scaled(Mesh mesh, double scale) {
 
 }  // namespace
 
-TEST_CASE("Hard: a fan of 5,000 triangles around one vertex") {
+TEST_CASE("Hard: the errors of a fan of 1,000 triangles fall from level to level") {
+    const Mesh mesh = make_fan(1000, true);
+    const auto result = bake::collapse(mesh, {});
+    REQUIRE(result.ok());
+    for (std::size_t level = 1; level < result->mesh.splits.size(); ++level)
+        REQUIRE(error_at(result->mesh, level) <= error_at(result->mesh, level - 1));
+    REQUIRE(error_at(result->mesh, result->mesh.splits.size()) == 0);
+}
+
+TEST_CASE("Hard: a fan of 20,000 triangles around one vertex") {
     for (const bool closed : {false, true})
         for (const bake::Cost cost : {bake::Cost::kQuadric, bake::Cost::kPaper}) {
             CAPTURE(closed, int(cost));
             bake::CollapseOptions options;
             options.cost = cost;
-            const Mesh mesh = make_fan(5000, closed);
+            // The record is what a hub makes slow; distances to needles have their own test.
+            options.calibrate = false;
+            const Mesh mesh = make_fan(20000, closed);
             const auto result = bake::collapse(mesh, options);
             REQUIRE(result.ok());
             CHECK(progressive_mesh_fault(result->mesh) == nullptr);

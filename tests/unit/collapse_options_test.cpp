@@ -182,16 +182,18 @@ TEST_CASE("Law 3: the same bytes for any number of threads, and every time") {
 }
 
 TEST_CASE("Law 3 holds where regions of a mesh are worked on at once") {
-    Mesh mesh = make_torus(400, 200);
+    Mesh mesh = make_torus(260, 140);
     for (std::size_t v = 0; v < mesh.positions.size(); ++v)
         mesh.positions[v].z += 0.003f * float(std::sin(double(v)));
     // A boundary, and parts that vanish.
     mesh.triangles.resize(mesh.triangles.size() - 1000);
     for (const float shift : {3.0f, 4.0f, 5.0f}) mesh = join(mesh, make_sphere(8, 6), {shift, 0, 0});
     std::vector<std::byte> first;
-    for (const std::size_t threads : {1u, 2u, 8u, 8u}) {
+    for (const std::size_t threads : {1u, 2u, 8u}) {
         const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
-        const auto result = bake::collapse(mesh, {});
+        bake::CollapseOptions options;
+        options.calibrate = false;
+        const auto result = bake::collapse(mesh, options);
         REQUIRE(result.ok());
         REQUIRE(progressive_mesh_fault(result->mesh) == nullptr);
         REQUIRE(result->report.components_vanished == 3);
