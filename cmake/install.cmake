@@ -9,7 +9,6 @@ install(EXPORT vsplit-targets NAMESPACE vsplit:: DESTINATION ${vsplit_package})
 # What a static archive needs when a stranger links it, and nothing of the baker.
 file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/vsplit-config.cmake @ONLY CONTENT
 "include(CMakeFindDependencyMacro)
-find_dependency(zstd CONFIG)
 find_dependency(draco CONFIG)
 include(\${CMAKE_CURRENT_LIST_DIR}/vsplit-targets.cmake)
 ")

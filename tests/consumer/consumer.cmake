@@ -14,7 +14,7 @@ set(options -G ${GENERATOR} -DCMAKE_BUILD_TYPE=${CONFIG} -DCMAKE_CXX_COMPILER=${
 if(WAY STREQUAL "installed")
   must(${CMAKE_COMMAND} --install ${BUILD} --config ${CONFIG} --prefix ${WORK}/prefix)
   list(APPEND options -DCMAKE_PREFIX_PATH=${WORK}/prefix)
-  # An engine links the library with zstd and Draco alone.
+  # An engine links the library with Draco alone.
   file(GLOB_RECURSE package ${WORK}/prefix/*.cmake ${WORK}/prefix/*.hpp)
   if(NOT package)
     message(FATAL_ERROR "nothing was installed")
