@@ -85,7 +85,7 @@ class Replay {
                 const float* then = move_values.data() + std::size_t{stride_} * from;
                 const bool idle = std::memcmp(&places[move.vertex], &move.position, sizeof(Float3)) == 0 &&
                                   (weights.empty() || weights[move.vertex] == move.weight) &&
-                                  std::memcmp(now, then, stride_ * sizeof(float)) == 0;
+                                  (stride_ == 0 || std::memcmp(now, then, stride_ * sizeof(float)) == 0);
                 places[move.vertex] = move.position;
                 if (!weights.empty()) weights[move.vertex] = move.weight;
                 std::copy_n(then, stride_, now);
