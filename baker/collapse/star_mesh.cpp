@@ -142,7 +142,8 @@ void StarMesh::classify() {
                         ++special;
                     }
                 const auto is_boundary = [](const Neighbour& n) { return n.out + n.in == 1; };
-                const auto boundaries = std::count_if(ring.begin(), ring.end(), is_boundary);
+                const auto boundaries =
+                    special == 0 ? 0 : std::count_if(ring.begin(), ring.end(), is_boundary);
                 vertices_[v].open = boundaries != 0;
                 if (special != 0 && !is_alike(special, curve)) {
                     // Several seams, or seams and a boundary, of an orderly fan.
@@ -152,8 +153,8 @@ void StarMesh::classify() {
                     if (!has_wedges() || !orderly || (boundaries != 0 && boundaries != 2)) continue;
                     vertices_[v].junction = 1;
                 }
-                vertices_[v].seam =
-                    std::any_of(ring.begin(), ring.end(), [](const Neighbour& n) { return n.seam; });
+                vertices_[v].seam = has_wedges() && std::any_of(ring.begin(), ring.end(),
+                                                                [](const Neighbour& n) { return n.seam; });
                 // The link must hang together: otherwise several fans meet in this one point.
                 roots.resize(ring.size());
                 std::iota(roots.begin(), roots.end(), 0u);
@@ -311,6 +312,20 @@ void neighbours_of(const StarMesh& mesh, std::uint32_t v, std::vector<Neighbour>
                 out[++n] = out[i];
         }
         out.resize(n + 1);
+        return;
+    }
+    if (!mesh.has_wedges()) {
+        const auto entry = [&](std::uint32_t w) -> Neighbour& {
+            for (Neighbour& n : out)
+                if (n.vertex == w) return n;
+            return out.emplace_back(Neighbour{w});
+        };
+        for (const std::uint32_t t : star) {
+            const Triangle& c = mesh.triangle(t);
+            const std::size_t k = c[0] == v ? 0 : c[1] == v ? 1 : 2;
+            ++entry(c[k == 2 ? 0 : k + 1]).out;
+            ++entry(c[k == 0 ? 2 : k - 1]).in;
+        }
         return;
     }
     for (const std::uint32_t t : star) {
