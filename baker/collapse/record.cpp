@@ -69,16 +69,6 @@ void Record::append(const Record& other, std::size_t begin, std::size_t end) {
                                other.parent_weights_.begin() + std::ptrdiff_t(end));
 }
 
-void Record::clear() {
-    corners_changed.clear();
-    removed.clear();
-    steps_.clear();
-    parent_weights_.clear();
-    vanished_.clear();
-    vanished_begins_.clear();
-    error_ = 0;
-}
-
 ProgressiveMesh Record::finish(const StarMesh& mesh, const std::vector<float>& weights,
                                std::vector<std::uint32_t>* births) {
     ProgressiveMesh out;

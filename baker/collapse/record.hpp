@@ -25,7 +25,6 @@ class Record {
     void add_vanished(const std::vector<std::uint32_t>& vertices, float error);
     /// Appends steps `begin` to `end` - 1 of another record.
     void append(const Record& other, std::size_t begin, std::size_t end);
-    void clear();
 
     std::vector<std::uint32_t> corners_changed;  ///< 3 * triangle + corner.
     std::vector<std::uint32_t> removed;          ///< Triangles.
