@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "wedge_cost.hpp"
+
 namespace vsplit::bake {
 namespace {
 
@@ -141,25 +143,50 @@ Region::Outcome Region::attempt(std::uint32_t u, const Option& option, Bucket bu
     if (!is_whole() && !star_inside(option.other)) return Outcome::kElsewhere;
     star_.gather(mesh_, u, option.other);
     if (!guards_.keeps_topology(star_)) return Outcome::kWaits;
-    // What will be stored decides: the guards look at the rounded place.
-    const Float3 rounded = option.fold == Fold::kIntoFirst    ? mesh_.raw_position(u)
-                           : option.fold == Fold::kIntoSecond ? mesh_.raw_position(option.other)
-                           : state_.options.placement == Placement::kEndpoint
-                               ? mesh_.raw_position(nearer_end(star_, option.candidate.place))
-                               : mesh_.round(option.candidate.place);
-    const Double3 place = mesh_.work(rounded);
-    star_.place_at(place);
-    if (!guards_.keeps_shape(star_, place, state_.histories, state_.strictness)) return Outcome::kWaits;
-    const Deviation deviation = deviation_of(star_, place, state_.histories);
-    const double d = deviation.largest;
     const double weight = 0.5 * (double(mesh_.vertex(u).weight) + double(mesh_.vertex(option.other).weight));
-    // The same dimension as the cost, so that one factor serves every level: area times distance^3.
-    const double limit =
-        state_.paper ? 0 : state_.options.deviation_limit * d * d * d * state_.mean_star * weight;
-    cost = float(std::max(option.candidate.cost, limit));
-    if (mesh_.has_wedges()) {
-        wedge_star_.gather(mesh_, star_, parent_of(star_, option));
-        cost += float(weight * attribute_cost(mesh_, star_, wedge_star_, *state_.wedges, place));
+    if (mesh_.has_wedges()) wedge_star_.gather(mesh_, star_, parent_of(star_, option));
+    Deviation deviation;
+    // What will be stored decides: the guards look at the rounded place.
+    const auto judge = [&](const Float3& rounded, double geometric) {
+        const Double3 place = mesh_.work(rounded);
+        star_.place_at(place);
+        if (!guards_.keeps_shape(star_, place, state_.histories, state_.strictness)) return kNeverCost;
+        deviation = deviation_of(star_, place, state_.histories);
+        const double d = deviation.largest;
+        // The same dimension as the cost, so that one factor serves every level: area times distance^3.
+        const double limit =
+            state_.paper ? 0 : state_.options.deviation_limit * d * d * d * state_.mean_star * weight;
+        float total = float(std::max(geometric, limit));
+        if (mesh_.has_wedges())
+            total += float(weight * attribute_cost(mesh_, star_, wedge_star_, *state_.wedges, place));
+        return total;
+    };
+    Float3 rounded = option.fold == Fold::kIntoFirst    ? mesh_.raw_position(u)
+                     : option.fold == Fold::kIntoSecond ? mesh_.raw_position(option.other)
+                     : state_.options.placement == Placement::kEndpoint
+                         ? mesh_.raw_position(nearer_end(star_, option.candidate.place))
+                         : mesh_.round(option.candidate.place);
+    cost = judge(rounded, option.candidate.cost);
+    if (mesh_.has_wedges() && !state_.paper && option.fold == Fold::kAnywhere && bucket_of(cost) <= bucket) {
+        // At either end the attributes may be kept so much better that it makes up for the place.
+        const EdgeQuadric<double> edge(shape_of(mesh_, u), shape_of(mesh_, option.other), state_.options);
+        const Deviation best = deviation;
+        Deviation chosen = best;
+        Float3 place = rounded;
+        bool moved = false;
+        for (const double side : {-1.0, 1.0}) {
+            const auto end = edge.end(side);
+            const Float3& there = mesh_.raw_position(side < 0 ? u : option.other);
+            const float price = judge(there, edge.price(end.cost));
+            moved = true;
+            if (price >= cost) continue;
+            cost = price;
+            place = there;
+            chosen = deviation;
+        }
+        rounded = place;
+        deviation = chosen;
+        if (moved) star_.place_at(mesh_.work(rounded));
     }
     if (bucket_of(cost) > bucket) return Outcome::kWaits;
     if (!is_whole()) {
@@ -193,6 +220,9 @@ void Region::fold_wedges(const EdgeStar& star, Double3 place) {
     for (std::size_t i = 0; i < wedge_star_.pairs.size(); ++i)
         mix_at(mesh_, star, wedge_star_, wedge_star_.pairs[i], *state_.wedges, place,
                std::span(mixed).subspan(stride * i, stride));
+    for (std::size_t i = 0; i < wedge_star_.pairs.size(); ++i)
+        join_samples(mesh_, star, wedge_star_.pairs[i], *state_.wedges, place,
+                     std::span(mixed).subspan(stride * i, stride));
     for (std::size_t i = 0; i < wedge_star_.pairs.size(); ++i) {
         const auto from = std::span(mixed).subspan(stride * i, stride);
         std::copy(from.begin(), from.end(), state_.wedges->of(wedge_star_.pairs[i].parent).begin());

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The vsplit authors
 // SPDX-License-Identifier: MIT
 //
-// bench assets: how a level looks against the full scene, ours and meshoptimizer's, each at the same number of
-// triangles, in the same renderer.
+// bench assets: how a level looks against the full scene, ours and meshoptimizer's, each at the same number
+// of triangles, in the same renderer.
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
@@ -35,10 +35,10 @@ struct Options {
 /// How a level differs from the full scene, means over all views.
 struct Difference {
     std::size_t triangles = 0;
-    double color = 0;    ///< Mean absolute, of the whole picture, times 255.
-    double rms = 0;      ///< Root of the mean square of the same.
-    double texcoord = 0; ///< Of pixels where both show the same material; each at most kFar.
-    double normal = 0;   ///< Degrees, of the same pixels.
+    double color = 0;     ///< Mean absolute, of the whole picture, times 255.
+    double rms = 0;       ///< Root of the mean square of the same.
+    double texcoord = 0;  ///< Of pixels where both show the same material; each at most kFar.
+    double normal = 0;    ///< Degrees, of the same pixels.
 };
 constexpr double kFar = 0.1;
 
@@ -83,7 +83,8 @@ Difference compare(const View& full, const View& level) {
 /// A scene's full pictures, against which its levels are held.
 class Judge {
   public:
-    Judge(const Scene& scene, const Options& options) : options_(options), views_(std::size_t(options.views)) {
+    Judge(const Scene& scene, const Options& options)
+        : options_(options), views_(std::size_t(options.views)) {
         const Soup soup = pose(scene);
         around_ = bounds_of(soup);
         tbb::parallel_for(0, options.views, [&](int i) {
@@ -124,7 +125,8 @@ std::vector<Scene> our_levels(const std::string& file, const Options& options, c
     std::string ratios;
     for (const double r : options.ratios) ratios += fmt::format("{}{}", ratios.empty() ? "" : ",", r);
     const std::string stem = folder + "/ours";
-    const std::string command = fmt::format("'{}' lods '{}' --separate --ratios {} {} -q -f -o '{}.glb'", options.command, file, ratios, options.flags, stem);
+    const std::string command = fmt::format("'{}' lods '{}' --separate --ratios {} {} -q -f -o '{}.glb'",
+                                            options.command, file, ratios, options.flags, stem);
     if (std::system(command.c_str()) != 0) throw std::runtime_error("failed: " + command);
     std::vector<Scene> levels;
     for (std::size_t i = 0; i < options.ratios.size(); ++i)
@@ -139,7 +141,7 @@ struct Row {
     std::string settings;
 };
 
-double mean_ratio(const std::vector<Row>& rows, double Difference::* what) {
+double mean_ratio(const std::vector<Row>& rows, double Difference::*what) {
     double sum = 0;
     std::size_t n = 0;
     for (const Row& row : rows) {
@@ -151,16 +153,22 @@ double mean_ratio(const std::vector<Row>& rows, double Difference::* what) {
 }
 
 std::string table(const std::vector<Row>& rows) {
-    std::string out = "| scene | ratio | triangles, ours / theirs | difference, ours / theirs | RMS | texture | normals | their weights |\n"
-                      "| --- | --- | --- | --- | --- | --- | --- | --- |\n";
+    std::string out =
+        "| scene | ratio | triangles, ours / theirs | difference, ours / theirs | RMS | texture | normals | "
+        "their weights |\n"
+        "| --- | --- | --- | --- | --- | --- | --- | --- |\n";
     for (const Row& r : rows)
-        out += fmt::format("| {} | {} % | {} / {} | {:.3f} / {:.3f} = {:.2f} | {:.2f} | {:.4f} / {:.4f} | {:.2f} / {:.2f} | {} |\n", r.model,
-                           100 * r.ratio, r.ours.triangles, r.theirs.triangles, r.ours.color, r.theirs.color,
-                           r.ours.color / r.theirs.color, r.ours.rms / r.theirs.rms, r.ours.texcoord, r.theirs.texcoord,
-                           r.ours.normal, r.theirs.normal, r.settings);
-    out += fmt::format("| **geometric mean of ours over theirs** | | | **{:.3f}** | **{:.3f}** | **{:.3f}** | **{:.3f}** | |\n",
-                       mean_ratio(rows, &Difference::color), mean_ratio(rows, &Difference::rms),
-                       mean_ratio(rows, &Difference::texcoord), mean_ratio(rows, &Difference::normal));
+        out += fmt::format(
+            "| {} | {} % | {} / {} | {:.3f} / {:.3f} = {:.2f} | {:.2f} | {:.4f} / {:.4f} | {:.2f} / {:.2f} | "
+            "{} |\n",
+            r.model, 100 * r.ratio, r.ours.triangles, r.theirs.triangles, r.ours.color, r.theirs.color,
+            r.ours.color / r.theirs.color, r.ours.rms / r.theirs.rms, r.ours.texcoord, r.theirs.texcoord,
+            r.ours.normal, r.theirs.normal, r.settings);
+    out += fmt::format(
+        "| **geometric mean of ours over theirs** | | | **{:.3f}** | **{:.3f}** | **{:.3f}** | **{:.3f}** | "
+        "|\n",
+        mean_ratio(rows, &Difference::color), mean_ratio(rows, &Difference::rms),
+        mean_ratio(rows, &Difference::texcoord), mean_ratio(rows, &Difference::normal));
     return out;
 }
 
@@ -194,14 +202,19 @@ int run(const Options& options) {
                 their_views = std::move(views);
             }
             rows.push_back(row);
-            fmt::print("{:18} {:4} %: {:6} / {:6} triangles, difference {:6.3f} / {:6.3f} = {:.3f}, rms {:.3f}, texture {:.3f}, normals {:.3f}  ({})\n", name, 100 * row.ratio,
-                       row.ours.triangles, row.theirs.triangles, row.ours.color, row.theirs.color, row.ours.color / row.theirs.color,
-                       row.ours.rms / row.theirs.rms, row.theirs.texcoord > 0 ? row.ours.texcoord / row.theirs.texcoord : 1, row.ours.normal / row.theirs.normal, row.settings);
+            fmt::print(
+                "{:18} {:4} %: {:6} / {:6} triangles, difference {:6.3f} / {:6.3f} = {:.3f}, rms {:.3f}, "
+                "texture {:.3f}, normals {:.3f}  ({})\n",
+                name, 100 * row.ratio, row.ours.triangles, row.theirs.triangles, row.ours.color,
+                row.theirs.color, row.ours.color / row.theirs.color, row.ours.rms / row.theirs.rms,
+                row.theirs.texcoord > 0 ? row.ours.texcoord / row.theirs.texcoord : 1,
+                row.ours.normal / row.theirs.normal, row.settings);
             std::fflush(stdout);
             if (!options.pictures.empty()) {
                 const auto v = std::size_t(options.views / 3);
                 write_pictures(fmt::format("{}/{}-{}.ppm", options.pictures, name, 100 * row.ratio),
-                               {&judge.views()[v], &our_views[v], &their_views[v], &judge.views()[2 * v], &our_views[2 * v], &their_views[2 * v]});
+                               {&judge.views()[v], &our_views[v], &their_views[v], &judge.views()[2 * v],
+                                &our_views[2 * v], &their_views[2 * v]});
             }
         }
     }
@@ -211,7 +224,8 @@ int run(const Options& options) {
                mean_ratio(rows, &Difference::texcoord), mean_ratio(rows, &Difference::normal));
     if (!options.markdown.empty()) {
         std::ofstream file(options.markdown);
-        file << "# Levels as rendered, against meshoptimizer\n\nWritten by `./run bench assets`.\n\n" << table(rows);
+        file << "# Levels as rendered, against meshoptimizer\n\nWritten by `./run bench assets`.\n\n"
+             << table(rows);
     }
     return 0;
 }

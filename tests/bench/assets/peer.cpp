@@ -91,8 +91,7 @@ std::vector<Scene> simplify_by_peer(const Scene& scene, const std::vector<double
         }
         if (!file.flush()) throw std::runtime_error("cannot write " + in);
     }
-    const std::string command =
-        "node '" VSPLIT_BENCH_SOURCE "/peer.mjs' '" + in + "' '" + out + "'";
+    const std::string command = "node '" VSPLIT_BENCH_SOURCE "/peer.mjs' '" + in + "' '" + out + "'";
     if (std::system(command.c_str()) != 0) throw std::runtime_error("failed: " + command);
     std::ifstream file(out, std::ios::binary);
     const std::vector<char> bytes{std::istreambuf_iterator<char>(file), {}};
@@ -116,7 +115,8 @@ std::vector<Scene> simplify_by_peer(const Scene& scene, const std::vector<double
             take(values.data(), values.size());
             for (std::size_t i = 0; i < p.positions.size(); ++i) {
                 const float* row = values.data() + widths[n] * i;
-                if (!p.normals.empty()) row = std::copy_n(row, 3, p.normals[i].begin()) - p.normals[i].begin() + row;
+                if (!p.normals.empty())
+                    row = std::copy_n(row, 3, p.normals[i].begin()) - p.normals[i].begin() + row;
                 if (!p.uvs.empty()) row = std::copy_n(row, 2, p.uvs[i].begin()) - p.uvs[i].begin() + row;
                 if (!p.colors.empty()) std::copy_n(row, 4, p.colors[i].begin());
             }

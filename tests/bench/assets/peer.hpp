@@ -11,7 +11,8 @@
 
 namespace vsplit::bench {
 
-/// Weights of attributes, as simplifyWithAttributes takes them: of normals, texture coordinates, colours and joints' weights.
+/// Weights of attributes, as simplifyWithAttributes takes them: of normals, texture coordinates, colours and
+/// joints' weights.
 struct PeerSettings {
     std::string name;
     float normal, texcoord, color, joints;

@@ -24,15 +24,16 @@ Point cross(const Point& a, const Point& b) {
     return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-/// A lamp at the camera's shoulder, one opposite, and some highlight: what a viewer shows without surroundings.
+/// A lamp at the camera's shoulder, one opposite, and some highlight: what a viewer shows without
+/// surroundings.
 Vec3 lit(const Vec4& albedo, const Point& normal, const Point& to_eye, const Point& lamp) {
     const Point half = unit({lamp[0] + to_eye[0], lamp[1] + to_eye[1], lamp[2] + to_eye[2]});
     const double diffuse = std::max(0.0, dot(normal, lamp)), back = std::max(0.0, -dot(normal, lamp)),
                  shine = std::pow(std::max(0.0, dot(normal, half)), 24.0);
     Vec3 out;
     for (std::size_t k = 0; k < 3; ++k)
-        out[k] =
-            float(std::clamp(double(albedo[k]) * (0.2 + 0.75 * diffuse + 0.15 * back) + 0.15 * shine, 0.0, 1.0));
+        out[k] = float(
+            std::clamp(double(albedo[k]) * (0.2 + 0.75 * diffuse + 0.15 * back) + 0.15 * shine, 0.0, 1.0));
     return out;
 }
 
@@ -68,10 +69,12 @@ View render(const Scene& scene, const Soup& soup, const Sphere& around, int numb
                  turn = number * std::numbers::pi * (3 - std::sqrt(5.0));
     const Point to_eye{ring * std::cos(turn), y, ring * std::sin(turn)};
     const Point right = unit(cross({0, 1, 0}, to_eye)), up = cross(to_eye, right);
-    const Point lamp = unit({to_eye[0] + 0.5 * right[0] + 0.7 * up[0], to_eye[1] + 0.5 * right[1] + 0.7 * up[1],
-                             to_eye[2] + 0.5 * right[2] + 0.7 * up[2]});
+    const Point lamp =
+        unit({to_eye[0] + 0.5 * right[0] + 0.7 * up[0], to_eye[1] + 0.5 * right[1] + 0.7 * up[1],
+              to_eye[2] + 0.5 * right[2] + 0.7 * up[2]});
     // The sphere's outline touches the picture's edge.
-    const double distance = 3 * around.radius, focal = std::sqrt(distance * distance - around.radius * around.radius) / around.radius;
+    const double distance = 3 * around.radius,
+                 focal = std::sqrt(distance * distance - around.radius * around.radius) / around.radius;
     struct Projected {
         double x, y, inverse;  // pixels, 1 / depth
     };
@@ -88,8 +91,7 @@ View render(const Scene& scene, const Soup& soup, const Sphere& around, int numb
         const Soup::Vertex* corner = &soup.corners[3 * t];
         const Projected p[3] = {project(corner[0].position), project(corner[1].position),
                                 project(corner[2].position)};
-        const double area =
-            (p[1].x - p[0].x) * (p[2].y - p[0].y) - (p[2].x - p[0].x) * (p[1].y - p[0].y);
+        const double area = (p[1].x - p[0].x) * (p[2].y - p[0].y) - (p[2].x - p[0].x) * (p[1].y - p[0].y);
         if (area == 0 || p[0].inverse <= 0 || p[1].inverse <= 0 || p[2].inverse <= 0) continue;
         const int number_of = soup.materials[t];
         const Material& material = number_of >= 0 ? scene.materials[std::size_t(number_of)] : plain;
@@ -97,11 +99,10 @@ View render(const Scene& scene, const Soup& soup, const Sphere& around, int numb
             material.texture >= 0 ? scene.textures[std::size_t(material.texture)] : white;
         float level = 0;
         if (!texture.levels.empty()) {
-            const double uv_area =
-                std::abs((double(corner[1].uv[0]) - double(corner[0].uv[0])) *
-                             (double(corner[2].uv[1]) - double(corner[0].uv[1])) -
-                         (double(corner[2].uv[0]) - double(corner[0].uv[0])) *
-                             (double(corner[1].uv[1]) - double(corner[0].uv[1])));
+            const double uv_area = std::abs((double(corner[1].uv[0]) - double(corner[0].uv[0])) *
+                                                (double(corner[2].uv[1]) - double(corner[0].uv[1])) -
+                                            (double(corner[2].uv[0]) - double(corner[0].uv[0])) *
+                                                (double(corner[1].uv[1]) - double(corner[0].uv[1])));
             const double texels =
                 uv_area * double(texture.levels[0].width) * double(texture.levels[0].height);
             level = float(0.5 * std::log2(std::max(texels / std::abs(area), 1e-9)));
@@ -127,7 +128,10 @@ View render(const Scene& scene, const Soup& soup, const Sphere& around, int numb
                 Vec2 uv{};
                 Vec4 color{};
                 for (std::size_t k = 0; k < 3; ++k) {
-                    for (std::size_t i = 0; i < 3; ++i) normal[i] += w[k] * double(unit({double(corner[k].normal[0]), double(corner[k].normal[1]), double(corner[k].normal[2])})[i]);
+                    for (std::size_t i = 0; i < 3; ++i)
+                        normal[i] +=
+                            w[k] * double(unit({double(corner[k].normal[0]), double(corner[k].normal[1]),
+                                                double(corner[k].normal[2])})[i]);
                     for (std::size_t i = 0; i < 2; ++i) uv[i] += float(w[k]) * corner[k].uv[i];
                     for (std::size_t i = 0; i < 4; ++i) color[i] += float(w[k]) * corner[k].color[i];
                 }

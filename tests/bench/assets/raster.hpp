@@ -14,10 +14,10 @@ namespace vsplit::bench {
 /// What one view shows, pixel by pixel.
 struct View {
     int size = 0;
-    std::vector<Vec3> colors;    ///< 0 to 1; where nothing is, the background.
-    std::vector<Vec3> normals;   ///< Unit; 0 where nothing is.
+    std::vector<Vec3> colors;   ///< 0 to 1; where nothing is, the background.
+    std::vector<Vec3> normals;  ///< Unit; 0 where nothing is.
     std::vector<Vec2> uvs;
-    std::vector<float> depths;   ///< Infinite where nothing is.
+    std::vector<float> depths;  ///< Infinite where nothing is.
     std::vector<int> materials;
 };
 

@@ -85,7 +85,8 @@ std::vector<double> numbers(const tinygltf::Model& model, int number, std::size_
                 out[width * i + k] = read(p + stride * i + size * k, a.componentType, a.normalized);
     }
     if (a.sparse.isSparse) {
-        const unsigned char* at = begin(a.sparse.indices.bufferView, std::size_t(a.sparse.indices.byteOffset));
+        const unsigned char* at =
+            begin(a.sparse.indices.bufferView, std::size_t(a.sparse.indices.byteOffset));
         const unsigned char* p = begin(a.sparse.values.bufferView, std::size_t(a.sparse.values.byteOffset));
         const auto step =
             std::size_t(tinygltf::GetComponentSizeInBytes(std::uint32_t(a.sparse.indices.componentType)));
@@ -149,7 +150,8 @@ Primitive read_primitive(const tinygltf::Model& model, const tinygltf::Primitive
             for (Vec4& c : out.colors) c[3] = 1;
     }
     for (std::size_t set = 0; set < 2; ++set) {
-        const std::string joints = "JOINTS_" + std::to_string(set), weights = "WEIGHTS_" + std::to_string(set);
+        const std::string joints = "JOINTS_" + std::to_string(set),
+                          weights = "WEIGHTS_" + std::to_string(set);
         if (!has(joints.c_str()) || !has(weights.c_str())) continue;
         const auto j = rows<Vec4>(model, from.attributes.at(joints)),
                    w = rows<Vec4>(model, from.attributes.at(weights));
@@ -161,6 +163,12 @@ Primitive read_primitive(const tinygltf::Model& model, const tinygltf::Primitive
                 out.weights[i][4 * set + k] = w.at(i)[k];
             }
     }
+    // Viewers do so; CesiumMan's do not sum to 1.
+    for (auto& row : out.weights) {
+        float sum = 0;
+        for (const float w : row) sum += w;
+        for (float& w : row) w = sum > 0 ? w / sum : 0;
+    }
     for (const auto& target : from.targets)
         out.morphs.push_back(target.count("POSITION") ? rows<Vec3>(model, target.at("POSITION"))
                                                       : std::vector<Vec3>(out.positions.size()));
@@ -170,7 +178,8 @@ Primitive read_primitive(const tinygltf::Model& model, const tinygltf::Primitive
     } else {
         for (std::uint32_t i = 0; i < out.positions.size(); ++i) corners.push_back(i);
     }
-    const bool strip = from.mode == TINYGLTF_MODE_TRIANGLE_STRIP, fan = from.mode == TINYGLTF_MODE_TRIANGLE_FAN;
+    const bool strip = from.mode == TINYGLTF_MODE_TRIANGLE_STRIP,
+               fan = from.mode == TINYGLTF_MODE_TRIANGLE_FAN;
     for (std::size_t i = 0; i + 2 < corners.size(); i += strip || fan ? 1 : 3) {
         std::array<std::uint32_t, 3> t{corners[fan ? 0 : i], corners[i + 1], corners[i + 2]};
         if (strip && i % 2 != 0) std::swap(t[0], t[1]);
@@ -184,8 +193,8 @@ Primitive read_primitive(const tinygltf::Model& model, const tinygltf::Primitive
 }
 
 /// Values of a sampler at a time; of cubic splines the middle ones, linearly.
-std::vector<double> sample(const tinygltf::Model& model, const tinygltf::AnimationSampler& sampler, double time,
-                           bool rotation) {
+std::vector<double> sample(const tinygltf::Model& model, const tinygltf::AnimationSampler& sampler,
+                           double time, bool rotation) {
     const auto times = numbers(model, sampler.input, 1);
     const auto kind = std::uint32_t(model.accessors.at(std::size_t(sampler.output)).type);
     const auto width = std::size_t(tinygltf::GetNumComponentsInType(kind));
@@ -262,7 +271,8 @@ void Primitive::weld() {
         const auto [at, is_new] = known.try_emplace(key, count);
         to[i] = at->second;
         if (!is_new) continue;
-        keep(positions, i), keep(normals, i), keep(uvs, i), keep(colors, i), keep(joints, i), keep(weights, i);
+        keep(positions, i), keep(normals, i), keep(uvs, i), keep(colors, i), keep(joints, i),
+            keep(weights, i);
         for (auto& morph : morphs) keep(morph, i);
         ++count;
     }
@@ -385,8 +395,7 @@ Soup pose(const Scene& scene) {
                     for (std::size_t k = 0; k < 8; ++k)
                         if (p.weights[i][k] > 0)
                             for (std::size_t e = 0; e < 16; ++e)
-                                matrix[e] +=
-                                    double(p.weights[i][k]) * instance.joints.at(p.joints[i][k])[e];
+                                matrix[e] += double(p.weights[i][k]) * instance.joints.at(p.joints[i][k])[e];
                 }
                 Soup::Vertex& v = vertices[i];
                 for (std::size_t r = 0; r < 3; ++r)
@@ -417,7 +426,8 @@ Soup pose(const Scene& scene) {
                         e[1][k] = t[2].position[k] - t[0].position[k];
                     }
                     for (std::size_t k = 0; k < 3; ++k)
-                        normal[k] = e[0][(k + 1) % 3] * e[1][(k + 2) % 3] - e[0][(k + 2) % 3] * e[1][(k + 1) % 3];
+                        normal[k] =
+                            e[0][(k + 1) % 3] * e[1][(k + 2) % 3] - e[0][(k + 2) % 3] * e[1][(k + 1) % 3];
                     for (auto& corner : t) corner.normal = normal;
                 }
                 soup.corners.insert(soup.corners.end(), t, t + 3);
