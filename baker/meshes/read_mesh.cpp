@@ -20,6 +20,9 @@ const char* foreign_format(std::span<const std::byte> bytes) {
         std::string_view magic;
         const char* name;
     } formats[] = {
+        {"\x8F"
+         "pmesh",
+         "a .pmesh, which is baked already (extract cuts a mesh out of it)"},
         {"glTF", "a glTF file"},
         {"{", "a JSON file (a glTF scene is read as a scene)"},
         {"\x89PNG", "a PNG image"},
