@@ -206,9 +206,6 @@ int InfoCommand::run() const {
                     with_commas(info->base_triangles), short_number(double(info->base_error))));
     for (std::size_t i = 0; i < info->blocks.size(); ++i) {
         const BlockInfo& b = info->blocks[i];
-        if (info->origin != std::array<double, 3>{})
-            say(common, fmt::format("  origin ({}, {}, {}): add it for the source's coordinates",
-                                    info->origin[0], info->origin[1], info->origin[2]));
         say(common, fmt::format("  {:>5}  {:>11} {:>9}  {:>11} {:>11}  {:>9}", i, with_commas(b.offset),
                                 with_commas(b.bytes), with_commas(b.vertices_end),
                                 with_commas(b.triangles_end), short_number(double(b.error))));
