@@ -254,8 +254,8 @@ void FileServer::answer(const httplib::Request& request, httplib::Response& resp
     response.set_header("Cache-Control", "no-cache");
     response.set_header(
         "Content-Security-Policy",
-        "default-src 'self'; style-src 'self' 'unsafe-inline'; script-src 'self' 'wasm-unsafe-eval'; "
-        "worker-src 'self' blob:; img-src 'self' data: blob:");
+        "default-src 'self'; connect-src 'self' blob: data:; style-src 'self' 'unsafe-inline'; "
+                        "script-src 'self' 'wasm-unsafe-eval'; worker-src 'self' blob:; img-src 'self' data: blob:");
     response.status = 200;
     response.set_content(listing_page(folder_, path), "text/html; charset=utf-8");
 }

@@ -92,7 +92,7 @@ std::string size_text(std::uint64_t bytes) {
 
 constexpr char kHead[] = R"html(<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">
-<title>{0}</title><style>
+<title>{0}</title><link rel="icon" href="data:,"><style>
 :root {{ color-scheme: light dark; --page: #f5f4f1; --card: #fff; --ink: #1d2226; --soft: #667078; --line: #dedbd4; --link: #0b6b6b; --stage: #e9e7e1; }}
 @media (prefers-color-scheme: dark) {{ :root {{ --page: #14171a; --card: #1c2024; --ink: #e8eaec; --soft: #97a1a9; --line: #2b3136; --link: #5cc9c0; --stage: #22272c; }} }}
 * {{ box-sizing: border-box; }}
