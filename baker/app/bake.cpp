@@ -153,6 +153,7 @@ int BakeCommand::run() const {
     auto result = bake::collapse(file->mesh, options, bar.callback());
     if (!result) return fail_input(input.path, result.error());
     const std::size_t triangles = file->mesh.triangles.size();
+    const auto moved = surface ? std::nullopt : origin_note(file->mesh);
     file->mesh = {};
     auto bytes = write_progressive_mesh(result->mesh, rounding());
     if (!bytes) return fail_output(output.path, bytes.error());
@@ -177,6 +178,7 @@ int BakeCommand::run() const {
                      {"fixed_vertices", result->report.fixed_vertices},
                      {"stopped_by", result->report.stopped_by},
                      {"weights", !mesh.weights.empty()},
+                     {"origin", mesh.origin},
                      {"bytes", bytes->size()},
                      {"seconds", seconds},
                      {"collapse_cpu_seconds", result->report.collapse_cpu_seconds},
@@ -195,6 +197,7 @@ int BakeCommand::run() const {
             with_commas(survey.components), with_commas(survey.boundary_edges),
             with_commas(survey.non_manifold_edges), file->report.format));
     for (const std::string& line : describe(file->report)) say(common, "  " + line);
+    if (moved) say(common, "  " + *moved);
     if (survey.duplicate_triangles)
         say(common, fmt::format("  {} duplicate triangles, kept", with_commas(survey.duplicate_triangles)));
     if (survey.zero_area_triangles)
