@@ -26,12 +26,12 @@ export function makeScene(): { scene: Scene; camera: PerspectiveCamera } {
     return { scene, camera };
 }
 
-/** Looks at all of the box from a little above. */
-export function frame(camera: PerspectiveCamera, box: Box3, target: Vector3, turn = 0.45, above = 0.22) {
+/** Looks at all of the box from a little above, so that it fills `share` of the camera's height and does not leave its width. */
+export function frame(camera: PerspectiveCamera, box: Box3, target: Vector3, share = 1, turn = 0.45, above = 0.22) {
     const sphere = box.getBoundingSphere(new Sphere());
     const radius = Math.max(sphere.radius, 1e-6);
-    const narrow = Math.min(1, camera.aspect);
-    const distance = (1.02 * radius) / Math.sin(Math.atan(Math.tan((camera.fov * Math.PI) / 360) * narrow));
+    const slope = Math.tan((camera.fov * Math.PI) / 360) * Math.min(share, camera.aspect);
+    const distance = (1.02 * radius) / Math.sin(Math.atan(slope));
     target.copy(sphere.center);
     camera.position.set(Math.sin(turn) * Math.cos(above), Math.sin(above), Math.cos(turn) * Math.cos(above)).multiplyScalar(distance).add(sphere.center);
     camera.near = distance / 200;

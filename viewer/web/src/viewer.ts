@@ -9,6 +9,7 @@ import { MeshoptDecoder } from 'three/addons/libs/meshopt_decoder.module.js';
 import type { Progress, Target } from '../../../lib/wasm/npm/src/messages.js';
 import { type VsplitError, VsplitModel } from '../../../lib/wasm/npm/src/three.js';
 import { errorHeat, type Heat, weightHeat } from './heat.js';
+import { Pace } from './pace.js';
 import { frame, makeRenderer, makeScene } from './stage.js';
 
 const element = <T extends HTMLElement = HTMLElement>(id: string) => document.getElementById(id) as T;
@@ -25,6 +26,7 @@ try {
     notice('This browser shows no WebGL 2.', false);
     throw new Error('no WebGL 2');
 }
+const pace = new Pace(renderer.getContext() as WebGL2RenderingContext);
 const orbit = new OrbitControls(camera, canvas);
 orbit.enableDamping = true;
 const timer = new Timer();
@@ -32,6 +34,8 @@ const timer = new Timer();
 let model: VsplitModel | undefined;
 let mixer: AnimationMixer | undefined;
 let framed = false;
+/** Of the camera's height, what the controls leave free. */
+let share = 1;
 let heats: Partial<Record<string, Heat>> = {};
 let plain = new Map<Mesh, Material | Material[]>();
 let drawn = true;
@@ -39,7 +43,7 @@ let frames: number[] = [];
 let lastTarget = '';
 
 // What tests and the curious read.
-const state = { ready: false, level: undefined as unknown, progress: undefined as Progress | undefined, error: undefined as VsplitError | undefined, info: undefined as unknown, firstTrianglesAt: 0, longest: 0, target: undefined as Target | undefined };
+const state = { ready: false, level: undefined as unknown, progress: undefined as Progress | undefined, error: undefined as VsplitError | undefined, info: undefined as unknown, firstTrianglesAt: 0, longestUpdate: 0, longestFrame: 0, target: undefined as Target | undefined };
 Object.assign(window, { vsplit: { state, get model() { return model; }, renderer, scene, camera } });
 
 const bytesText = (bytes: number) => (bytes < 1e6 ? `${(bytes / 1e3).toFixed(0)} kB` : `${(bytes / 1e6).toFixed(2)} MB`);
@@ -55,7 +59,7 @@ const sliderPixels = () => 0.25 * 2 ** (Number(input('pixels').value) / 15);
 const mode = () => (document.querySelector<HTMLInputElement>('input[name=mode]:checked')!).value;
 
 function target(): Target {
-    if (mode() === 'pixels' && model?.info) return { error: model.errorForPixels(sliderPixels(), camera, canvas.clientHeight * renderer.getPixelRatio()) };
+    if (mode() === 'pixels' && model?.info) return { error: model.errorForPixels(sliderPixels(), camera, (canvas.clientWidth / camera.aspect) * renderer.getPixelRatio()) };
     return { ratio: sliderRatio() };
 }
 
@@ -112,7 +116,7 @@ function open(source: string | File, name: string) {
     mixer = undefined;
     framed = false;
     lastTarget = '';
-    Object.assign(state, { ready: false, level: undefined, progress: undefined, error: undefined, info: undefined, firstTrianglesAt: 0, longest: 0 });
+    Object.assign(state, { ready: false, level: undefined, progress: undefined, error: undefined, info: undefined, firstTrianglesAt: 0, longestUpdate: 0, longestFrame: 0 });
     element('notice').hidden = element('empty').hidden = true;
     text('name', name);
     text('facts', 'Asking for it …');
@@ -188,7 +192,7 @@ function stand() {
 function frameAll() {
     if (!model || model.bounds.isEmpty()) return;
     framed = true;
-    frame(camera, model.bounds.clone().applyMatrix4(model.matrixWorld), orbit.target);
+    frame(camera, model.bounds.clone().applyMatrix4(model.matrixWorld), orbit.target, share);
     orbit.minDistance = camera.near * 2;
     orbit.maxDistance = camera.far / 3;
     orbit.update();
@@ -199,12 +203,14 @@ function resize() {
     const width = canvas.clientWidth, height = canvas.clientHeight;
     renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     renderer.setSize(width, height, false);
-    camera.aspect = width / Math.max(1, height);
     // The model stands in the part that the controls leave free.
     const panel = element('panel').getBoundingClientRect();
-    const covered = panel.left < width * 0.4 && panel.right > width * 0.6 ? Math.max(0, height - panel.top) : 0;
-    if (covered > 0 && covered < height * 0.6) camera.setViewOffset(width, height + covered * 0.8, 0, covered * 0.8, width, height);
-    else camera.clearViewOffset();
+    const below = panel.left < width * 0.4 && panel.right > width * 0.6 ? Math.max(0, height - panel.top) : 0;
+    const covered = below < height * 0.6 ? below : 0;
+    const all = height + covered;
+    share = (height - covered) / all;
+    camera.aspect = width / Math.max(1, all);
+    camera.setViewOffset(width, all, 0, covered, width, height);
     camera.updateProjectionMatrix();
     wake();
 }
@@ -219,18 +225,22 @@ function wake() {
 }
 
 function tick(now: number) {
+    if (!pace.free()) return void requestAnimationFrame(tick);
     const began = performance.now();
     timer.update();
     orbit.autoRotate = input('turn').checked;
     const moved = orbit.update(timer.getDelta());
     if (mode() === 'pixels') aim();
     const changed = model?.update() ?? false;
+    const updated = performance.now();
     mixer?.update(timer.getDelta());
     if (changed || moved || mixer || !drawn) {
         renderer.render(scene, camera);
+        pace.drawn();
         drawn = true;
         frames.push(now);
-        state.longest = Math.max(state.longest, performance.now() - began);
+        state.longestUpdate = Math.max(state.longestUpdate, updated - began);
+        state.longestFrame = Math.max(state.longestFrame, performance.now() - began);
     }
     while (frames.length > 1 && frames[0] < now - 500) frames.shift();
     if (frames.length > 2) text('frame', `${((frames.at(-1)! - frames[0]) / (frames.length - 1)).toFixed(1)} ms`);

@@ -53,6 +53,15 @@ export async function compileVsplit(source: string | URL | BufferSource): Promis
     return WebAssembly.compile(await response.arrayBuffer());
 }
 
+/** As glTF demands of joint weights. Files that do not obey are common, and the stream has what the file had. */
+function sumToOne(weights: ArrayPatch['data']) {
+    for (let i = 0; i + 3 < weights.length; i += 4) {
+        const sum = weights[i] + weights[i + 1] + weights[i + 2] + weights[i + 3];
+        if (sum > 0) for (let k = 0; k < 4; ++k) weights[i + k] /= sum;
+        else weights[i] = 1;
+    }
+}
+
 /**
  * One progressive mesh. Bytes are fed in the file's order in pieces of any size. An error leaves the mesh as it was; after 'checksum',
  * `fed` is where the damaged block begins, and it may be fed again.
@@ -142,6 +151,7 @@ export class VsplitStream {
             if (info.hasWeights) this.take(arrays, { array: 'weight' }, () => this.wasm.vsplit_pack_vertices(1), Float32Array);
             if (this.normals && !named) this.take(arrays, { array: 'normal' }, () => this.wasm.vsplit_pack_vertices(2), Int16Array);
             info.attributes.forEach((attribute, i) => this.take(arrays, { array: attribute.name }, () => this.wasm.vsplit_pack_vertices(3 + i), Float32Array));
+            for (const array of arrays) if (array.array === 'WEIGHTS_0') sumToOne(array.data);
             const counts: number[] = [];
             for (let group = 0; group < info.groups; ++group) {
                 counts.push(this.wasm.vsplit_group_triangles(group));

@@ -23,11 +23,13 @@ export interface ModelOptions extends SessionOptions {
     gltfLoader?: { parse(data: ArrayBuffer, path: string, onLoad: (gltf: GLTF) => void, onError?: (error: any) => void): void };
     /** What update() may take, in milliseconds. */
     frameTime?: number;
-    /** What one frame may send to the GPU. */
+    /** What one frame may send to the GPU: the first ones; then what takes about frameTime. */
     frameBytes?: number;
 }
 
 const kNames: Record<string, string> = { NORMAL: 'normal', TANGENT: 'tangent', TEXCOORD_0: 'uv', TEXCOORD_1: 'uv1', TEXCOORD_2: 'uv2', TEXCOORD_3: 'uv3', COLOR_0: 'color', JOINTS_0: 'skinIndex', WEIGHTS_0: 'skinWeight' };
+
+const kLeastFrameBytes = 256 * 1024, kMostFrameBytes = 16 * 1024 * 1024;
 
 /** One group of triangles, and the objects that draw it. */
 interface Part {
@@ -56,8 +58,11 @@ export class VsplitModel extends Group<{ progress: { progress: Progress }; level
     frameTime: number;
     frameBytes: number;
 
+    private sentAt = 0;
     private readonly session: VsplitSession;
     private readonly arrays = new Map<string, LiveArray>();
+    /** Of each copy: shared by all parts. */
+    private readonly attributes: [Map<string, BufferAttribute>, Map<string, BufferAttribute>] = [new Map(), new Map()];
     private readonly parts: Part[] = [];
     private readonly waiting: MeshPatch[] = [];
     private cursor?: PatchCursor;
@@ -166,29 +171,45 @@ export class VsplitModel extends Group<{ progress: { progress: Progress }; level
     private upload(side: 0 | 1): boolean {
         // What was marked in the frame before has to be gone, or nobody draws.
         const attributes: [LiveArray, BufferAttribute][] = [];
+        const seen = new Set<string>();
+        let fresh = 0;
         for (const part of this.parts) {
             const geometry = part.copies[side].geometry;
             for (const [name, array] of this.arrays) {
                 const used = kNames[name] ?? name;
                 if (part.attributes && name !== 'position' && name !== 'normal' && !part.attributes.has(name)) continue;
-                if (!geometry.hasAttribute(used)) {
-                    // A new one is sent whole: one a frame.
-                    const shared = this.parts[0].copies[side].geometry.getAttribute(used) as BufferAttribute | undefined;
-                    geometry.setAttribute(used, shared ?? array.attribute(side));
-                    if (!shared) return false;
+                let attribute = this.attributes[side].get(name);
+                if (!attribute) {
+                    // A new one is sent whole, however large.
+                    this.attributes[side].set(name, attribute = array.attribute(side));
+                    fresh += array.data.byteLength;
                 }
-                if (part === this.parts[0]) attributes.push([array, geometry.getAttribute(used) as BufferAttribute]);
+                if (!geometry.hasAttribute(used)) geometry.setAttribute(used, attribute);
+                if (!seen.has(name)) attributes.push([array, attribute]);
+                seen.add(name);
+                if (fresh > this.frameBytes) return false;
             }
             if (geometry.index?.array !== part.index.data) {
                 geometry.setIndex(part.index.attribute(side));
-                return false;
+                fresh += part.index.data.byteLength;
+                if (fresh > this.frameBytes) return false;
             }
             attributes.push([part.index, geometry.index!]);
         }
-        if (attributes.some(([, attribute]) => attribute.updateRanges.length > 0)) return false;
+        if (fresh > 0 || attributes.some(([, attribute]) => attribute.updateRanges.length > 0)) return false;
         let left = this.frameBytes;
         for (const [array, attribute] of attributes) if (left > 0) left = array.flush(side, attribute, left);
+        this.sentAt = performance.now();
         return left === this.frameBytes;
+    }
+
+    /** Fast machines send more a frame, slow ones less. */
+    private measure() {
+        if (this.sentAt === 0) return;
+        const taken = performance.now() - this.sentAt;
+        this.sentAt = 0;
+        if (taken < this.frameTime / 2) this.frameBytes = Math.min(2 * this.frameBytes, kMostFrameBytes);
+        else if (taken > this.frameTime) this.frameBytes = Math.max(this.frameBytes / 2, kLeastFrameBytes);
     }
 
     private swap(side: 0 | 1) {
@@ -282,6 +303,8 @@ export class VsplitModel extends Group<{ progress: { progress: Progress }; level
         // Their own bounds follow the bones, over all vertices, each frame.
         for (const object of objects) if ((object as { isSkinnedMesh?: boolean }).isSkinnedMesh) object.frustumCulled = false;
         part.uploader.geometry = part.copies[1].geometry;
+        // three.js sends all arrays before it draws the first object: the time until then is theirs.
+        if (this.parts.length === 0) part.uploader.onBeforeRender = () => this.measure();
         part.uploader.frustumCulled = false;
         part.uploader.raycast = () => {};
         part.uploader.name = 'vsplit upload';

@@ -187,7 +187,7 @@ class Session {
     private pump() {
         while (this.stream?.info && this.onTheirWay < kPatchesOnTheirWay) {
             const before = this.patched ? this.stream.level.triangles : -1;
-            const more = this.stream.advance(this.target, this.options.splitsPerPatch ?? 32 * 1024);
+            const more = this.stream.advance(this.target, this.options.splitsPerPatch ?? 128 * 1024);
             if (this.stream.level.triangles === before && !more) return;
             const patch: MeshPatch = this.stream.patch();
             this.patched = true;
