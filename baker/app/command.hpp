@@ -97,5 +97,6 @@ void add_extract(CLI::App& app, int& exit);
 void add_lods(CLI::App& app, int& exit);
 void add_verify(CLI::App& app, int& exit);
 void add_sample(CLI::App& app, int& exit);
+void add_serve(CLI::App& app, int& exit);
 
 }  // namespace vsplit::app
