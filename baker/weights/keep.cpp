@@ -153,7 +153,11 @@ Result<std::vector<KeepResult>> find_weights(const Mesh& mesh, Marks& marks, std
         return refuse("there are not as many marks as vertices");
     CollapseOptions quick = options;
     quick.calibrate = false;  // the sequence is the same without
-    Search search{mesh, quick, progress, marks, automatic_weights(edge_errors(mesh)).factor(options.cost),
+    Search search{mesh,
+                  quick,
+                  progress,
+                  marks,
+                  automatic_weights(edge_errors(mesh)).factor(options.cost),
                   std::vector<char>(mesh.positions.size(), 0)};
     for (const Triangle& t : mesh.triangles)
         for (const std::uint32_t v : t) search.used[v] = 1;

@@ -27,7 +27,8 @@ std::vector<float> weights_of(const Marks& marks, double automatic) {
         if (number == 0 || marks.strength[v] <= 0) continue;
         assert(number <= marks.regions.size());
         const double weight = marks.regions[number - 1].weight.value_or(automatic);
-        weights[v] = marks.strength[v] >= 1 ? float(weight) : float(std::pow(weight, double(marks.strength[v])));
+        weights[v] =
+            marks.strength[v] >= 1 ? float(weight) : float(std::pow(weight, double(marks.strength[v])));
     }
     return weights;
 }

@@ -47,7 +47,8 @@ const char* parse_region(std::string_view line, Marks& marks) {
     const std::string_view weight = next_word(line);
     if (weight != "auto") {
         double value = 0;
-        if (!number(weight, value) || !(value >= 0)) return "a region's weight is a number of 0 or more, inf, or auto";
+        if (!number(weight, value) || !(value >= 0))
+            return "a region's weight is a number of 0 or more, inf, or auto";
         region.weight = value;
     }
     const std::string_view colour = next_word(line);
@@ -122,7 +123,8 @@ std::vector<std::byte> encode_marks(const Marks& marks) {
             text += "auto";
         char colour[8] = " #";
         text += colour;
-        for (int shift = 20; shift >= 0; shift -= 4) text += "0123456789abcdef"[(region.colour >> shift) & 15];
+        for (int shift = 20; shift >= 0; shift -= 4)
+            text += "0123456789abcdef"[(region.colour >> shift) & 15];
         text += '\n';
     }
     for (std::size_t v = 0; v < marks.region.size(); ++v) {
@@ -163,7 +165,8 @@ std::optional<Keep> parse_keep(std::string_view text) {
     const std::size_t equals = text.rfind('='), at = text.rfind('@');
     if (equals == std::string_view::npos || at == std::string_view::npos || at < equals || equals == 0)
         return std::nullopt;
-    const auto share = parse_share(text.substr(equals + 1, at - equals - 1)), ratio = parse_share(text.substr(at + 1));
+    const auto share = parse_share(text.substr(equals + 1, at - equals - 1)),
+               ratio = parse_share(text.substr(at + 1));
     if (!share || !ratio) return std::nullopt;
     return Keep{std::string(text.substr(0, equals)), *share, *ratio};
 }

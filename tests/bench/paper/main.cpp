@@ -83,8 +83,7 @@ Mesh unmarked_part(const Mesh& level, std::span<const std::uint32_t> origins, co
     Mesh part;
     part.positions = level.positions;
     for (const Triangle& t : level.triangles)
-        if (std::none_of(t.begin(), t.end(),
-                         [&](std::uint32_t v) { return marks.region[origins[v]] != 0; }))
+        if (std::none_of(t.begin(), t.end(), [&](std::uint32_t v) { return marks.region[origins[v]] != 0; }))
             part.triangles.push_back(t);
     return part;
 }
@@ -110,16 +109,17 @@ Row measure(const ProgressiveMesh& record, const Mesh& input, const Marks& marks
 }
 
 void print_row(const char* name, const Row& row, const char* paper) {
-    fmt::print("| {} | {} | {} | {} | {:.1f} % | {:.1f} % | {} | {} | {:.3f} | {} |\n", name, row.whole, row.marked,
-               row.whole - row.marked, 100.0 * double(row.marked) / double(row.whole), 100 * row.triangle_share,
-               row.unmarked.new_flipped + row.unmarked.new_folded, row.unmarked.new_degenerate,
-               row.unmarked.quality_min, paper);
+    fmt::print("| {} | {} | {} | {} | {:.1f} % | {:.1f} % | {} | {} | {:.3f} | {} |\n", name, row.whole,
+               row.marked, row.whole - row.marked, 100.0 * double(row.marked) / double(row.whole),
+               100 * row.triangle_share, row.unmarked.new_flipped + row.unmarked.new_folded,
+               row.unmarked.new_degenerate, row.unmarked.quality_min, paper);
 }
 
 void head() {
-    fmt::print("| model | whole | marked | unmarked | marked share | triangles with a marked corner | "
-               "unmarked part: flips and folds | degenerate | least quality | paper (whole, marked, unmarked) |\n"
-               "| --- | --: | --: | --: | --: | --: | --: | --: | --: | --- |\n");
+    fmt::print(
+        "| model | whole | marked | unmarked | marked share | triangles with a marked corner | "
+        "unmarked part: flips and folds | degenerate | least quality | paper (whole, marked, unmarked) |\n"
+        "| --- | --: | --: | --: | --: | --: | --: | --: | --: | --- |\n");
 }
 
 /// A: the mesh of 2,645 vertices is all there is.
@@ -136,19 +136,22 @@ void mesh_alone(Run& run, const Mesh& whale, Cost cost) {
                cost == Cost::kPaper ? "paper" : "quadric", automatic.factor(cost));
     head();
     print_row("original", measure(record, whale, marks, kVertices, *ruler), "2645, 568, 2077");
-    const Row at60 = measure(record, whale, marks, kAt60, *ruler), at40 = measure(record, whale, marks, kAt40, *ruler);
+    const Row at60 = measure(record, whale, marks, kAt60, *ruler),
+              at40 = measure(record, whale, marks, kAt40, *ruler);
     print_row("60 %", at60, "1587, 738, 849");
     print_row("40 %", at40, "1058, 539, 519");
     fmt::print("\n");
     const double kept = double(at40.marked) / double(kMarked);
     run.check(whale.positions.size() == kVertices && at60.whole == kAt60 && at40.whole == kAt40,
               "the counts of the whole are the paper's");
-    run.check(kept >= 0.95, fmt::format("at 40 %, {:.1f} % of the marked vertices are kept (wanted: 95 %)", 100 * kept));
+    run.check(kept >= 0.95,
+              fmt::format("at 40 %, {:.1f} % of the marked vertices are kept (wanted: 95 %)", 100 * kept));
     for (const Row& row : {at60, at40})
-        run.check(row.unmarked.new_flipped + row.unmarked.new_folded + row.unmarked.new_degenerate == 0 &&
-                      row.unmarked.quality_min >= 0.02,
-                  fmt::format("at {} vertices the unmarked part has no flip and no sliver (quality below 0.02)",
-                              row.whole));
+        run.check(
+            row.unmarked.new_flipped + row.unmarked.new_folded + row.unmarked.new_degenerate == 0 &&
+                row.unmarked.quality_min >= 0.02,
+            fmt::format("at {} vertices the unmarked part has no flip and no sliver (quality below 0.02)",
+                        row.whole));
     if (cost == Cost::kPaper) {
         run.save("whale-2645.ply", encode_ply(whale));
         run.save("whale-2645.marks", encode_marks(marks));
@@ -166,43 +169,50 @@ void level_of_a_finer_one(Run& run, const Mesh& fine, const ProgressiveMesh& rec
     Marks marks = no_marks(fine.positions.size());
     marks.regions.push_back({"head", {}, 0xE6550D});
     for (std::size_t v = 0; v < all.size(); ++v)
-        if (all[v] == 1 && (v < shown.positions.size() || record.parents[v] != kNoVertex)) marks.region[origins[v]] = 1;
+        if (all[v] == 1 && (v < shown.positions.size() || record.parents[v] != kNoVertex))
+            marks.region[origins[v]] = 1;
     const AutomaticWeights automatic = automatic_weights(edge_errors(fine));
     Mesh painted = fine;
     painted.weights = weights_of(marks, automatic.factor(cost));
     const ProgressiveMesh again = baked(painted, cost);
     auto ruler = ruler::Ruler::over(fine);
-    fmt::print("\n### Table III, marked on a level of {} vertices of a whale of {}, cost {}, automatic weight {:.1f}\n\n",
-               kVertices, fine.positions.size(), cost == Cost::kPaper ? "paper" : "quadric", automatic.factor(cost));
+    fmt::print(
+        "\n### Table III, marked on a level of {} vertices of a whale of {}, cost {}, automatic weight "
+        "{:.1f}\n\n",
+        kVertices, fine.positions.size(), cost == Cost::kPaper ? "paper" : "quadric", automatic.factor(cost));
     head();
     print_row("full model", measure(again, fine, marks, fine.positions.size(), *ruler), "not told");
     fmt::print("| as marked | {} | {} | {} | {:.1f} % | | | | | 2645, 568, 2077 |\n", kVertices, kMarked,
                kVertices - kMarked, 100.0 * kMarked / kVertices);
-    const Row at60 = measure(again, fine, marks, kAt60, *ruler), at40 = measure(again, fine, marks, kAt40, *ruler);
+    const Row at60 = measure(again, fine, marks, kAt60, *ruler),
+              at40 = measure(again, fine, marks, kAt40, *ruler);
     print_row("60 %", at60, "1587, 738, 849");
     print_row("40 %", at40, "1058, 539, 519");
     fmt::print("\n");
     const double share = double(at60.marked) / double(at60.whole);
-    run.check(share >= 738.0 / 1587.0,
-              fmt::format("at 60 %, {:.1f} % of the mesh is in the marked area (wanted: 46.5 %)", 100 * share));
+    run.check(
+        share >= 738.0 / 1587.0,
+        fmt::format("at 60 %, {:.1f} % of the mesh is in the marked area (wanted: 46.5 %)", 100 * share));
     run.check(double(at40.marked) >= 0.95 * kMarked,
               fmt::format("at 40 %, the marked area has {} vertices (wanted: 95 % of 568)", at40.marked));
     for (const Row& row : {at60, at40})
-        run.check(row.unmarked.new_flipped + row.unmarked.new_folded + row.unmarked.new_degenerate == 0 &&
-                      row.unmarked.quality_min >= 0.02,
-                  fmt::format("at {} vertices the unmarked part has no flip and no sliver (quality below 0.02)",
-                              row.whole));
+        run.check(
+            row.unmarked.new_flipped + row.unmarked.new_folded + row.unmarked.new_degenerate == 0 &&
+                row.unmarked.quality_min >= 0.02,
+            fmt::format("at {} vertices the unmarked part has no flip and no sliver (quality below 0.02)",
+                        row.whole));
 }
 
 void table_two(const Mesh& whale, const Mesh& ocean) {
-    fmt::print("### Table II\n\n| model | smallest error | median | largest error | initial weight | mark weight | "
-               "factor, cost paper | cost quadric | paper (smallest, largest, initial, mark) |\n"
-               "| --- | --: | --: | --: | --: | --: | --: | --: | --- |\n");
+    fmt::print(
+        "### Table II\n\n| model | smallest error | median | largest error | initial weight | mark weight | "
+        "factor, cost paper | cost quadric | paper (smallest, largest, initial, mark) |\n"
+        "| --- | --: | --: | --: | --: | --: | --: | --: | --- |\n");
     const auto row = [](const char* name, const Mesh& mesh, const char* paper) {
         const AutomaticWeights w = automatic_weights(edge_errors(mesh));
-        fmt::print("| {} | {:.5f} | {:.5f} | {:.5f} | {:.6f} | {:.6f} | {:.1f} | {:.1f} | {} |\n", name, w.errors.smallest,
-                   w.errors.median, w.errors.largest, w.initial, w.mark, w.factor(Cost::kPaper),
-                   w.factor(Cost::kQuadric), paper);
+        fmt::print("| {} | {:.5f} | {:.5f} | {:.5f} | {:.6f} | {:.6f} | {:.1f} | {:.1f} | {} |\n", name,
+                   w.errors.smallest, w.errors.median, w.errors.largest, w.initial, w.mark,
+                   w.factor(Cost::kPaper), w.factor(Cost::kQuadric), paper);
     };
     row("whale", whale, "0.0, 0.38589, 0.194735, 0.287543");
     row("ocean", ocean, "0.0, 0.78723, 0.287543, 0.589832");
@@ -210,10 +220,13 @@ void table_two(const Mesh& whale, const Mesh& ocean) {
 
 /// --keep REGION=95%@40% and others, on the same marks.
 void keep(Run& run, const Mesh& whale) {
-    fmt::print("\n### --keep\n\n| cost | asked | weight found | kept | records made |\n| --- | --- | --: | --: | --: |\n");
+    fmt::print(
+        "\n### --keep\n\n| cost | asked | weight found | kept | records made |\n| --- | --- | --: | --: | "
+        "--: |\n");
     bool hits = true;
     for (const Cost cost : {Cost::kPaper, Cost::kQuadric})
-        for (const char* wish : {"head=95%@40%", "head=80%@40%", "head=90%@25%", "head=99%@60%", "head=30%@40%"}) {
+        for (const char* wish :
+             {"head=95%@40%", "head=80%@40%", "head=90%@25%", "head=99%@60%", "head=30%@40%"}) {
             Marks marks = no_marks(whale.positions.size());
             marks.regions.push_back({"head", {}, 0xE6550D});
             for (const std::uint32_t v : foremost(whale, kMarked)) marks.region[v] = 1;
@@ -222,13 +235,14 @@ void keep(Run& run, const Mesh& whale) {
             const Keep asked = *parse_keep(wish);
             const auto found = find_weights(whale, marks, {&asked, 1}, options);
             if (!found) {
-                fmt::print("| {} | {} | {} | | |\n", cost == Cost::kPaper ? "paper" : "quadric", wish, found.error().message);
+                fmt::print("| {} | {} | {} | | |\n", cost == Cost::kPaper ? "paper" : "quadric", wish,
+                           found.error().message);
                 hits = false;
                 continue;
             }
             const KeepResult& r = found->front();
-            fmt::print("| {} | {} | {:.3f} | {:.2f} % | {} |\n", cost == Cost::kPaper ? "paper" : "quadric", wish, r.weight,
-                       100 * r.share, r.bakes);
+            fmt::print("| {} | {} | {:.3f} | {:.2f} % | {} |\n", cost == Cost::kPaper ? "paper" : "quadric",
+                       wish, r.weight, 100 * r.share, r.bakes);
             hits = hits && std::abs(r.share - asked.share) <= 0.01;
         }
     fmt::print("\n");

@@ -44,8 +44,8 @@ AutomaticWeights automatic_weights(const EdgeErrors& errors);
 
 /// One of the things that matter.
 struct Region {
-    std::string name;              ///< Without blanks or '='; different for each.
-    std::optional<double> weight;  ///< >= 0, may be infinite; nothing: the automatic one.
+    std::string name;                 ///< Without blanks or '='; different for each.
+    std::optional<double> weight;     ///< >= 0, may be infinite; nothing: the automatic one.
     std::uint32_t colour = 0xE6550D;  ///< 0xRRGGBB.
     friend bool operator==(const Region&, const Region&) = default;
 };
@@ -54,9 +54,9 @@ struct Region {
 struct Marks {
     static constexpr std::size_t kMaxRegions = 255;
 
-    std::vector<Region> regions;        ///< Number r below is regions[r - 1].
-    std::vector<std::uint8_t> region;   ///< One per vertex; 0: none.
-    std::vector<float> strength;        ///< One per vertex, 0 to 1: the weight is raised to this power.
+    std::vector<Region> regions;       ///< Number r below is regions[r - 1].
+    std::vector<std::uint8_t> region;  ///< One per vertex; 0: none.
+    std::vector<float> strength;       ///< One per vertex, 0 to 1: the weight is raised to this power.
     friend bool operator==(const Marks&, const Marks&) = default;
 };
 
@@ -100,8 +100,8 @@ std::size_t region_vertices_at(const ProgressiveMesh& record, std::span<const st
 
 struct KeepResult {
     double weight = 1;
-    double share = 0;           ///< What that weight keeps.
-    std::size_t bakes = 0;      ///< Records made to find it.
+    double share = 0;       ///< What that weight keeps.
+    std::size_t bakes = 0;  ///< Records made to find it.
 };
 
 /// The weights that keep what is asked, within 1 %: each region's weight is searched by recording the
