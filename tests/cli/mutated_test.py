@@ -12,7 +12,7 @@ from harness import *
 
 import scenes
 
-CHANGES = 160
+CHANGES = 320
 
 
 def parts_of(glb):
