@@ -222,14 +222,11 @@ int BakeCommand::run() const {
             with_commas(survey.non_manifold_edges), file->report.format));
     for (const std::string& line : describe(file->report)) say(common, "  " + line);
     if (moved) say(common, "  " + *moved);
-<<<<<<< HEAD
     if (file->report.format.starts_with("glTF"))
         say(common,
             "  the shape alone, as one mesh: to keep normals, textures, skins and materials, bake to a .glb");
-=======
     if (marked)
         for (const std::string& line : marked->describe()) say(common, "  " + line);
->>>>>>> main
     if (survey.duplicate_triangles)
         say(common, fmt::format("  {} duplicate triangles, kept", with_commas(survey.duplicate_triangles)));
     if (survey.zero_area_triangles)
