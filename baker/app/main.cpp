@@ -31,6 +31,10 @@ int main(int argc, char** argv) {
     add_verify(app, exit);
     add_sample(app, exit);
     add_serve(app, exit);
+    add_studio(app, exit);
+#ifdef VSPLIT_VIEWER
+    add_render(app, exit);
+#endif
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
