@@ -4,7 +4,7 @@
 // web_test.mjs VSPLIT PICTURES: the viewer in Chromium, against good servers and bad ones. Pictures are left in a folder, to be looked at.
 import assert from 'node:assert/strict';
 import { execFileSync, spawn, spawnSync } from 'node:child_process';
-import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { cpSync, mkdirSync, mkdtempSync, readFileSync, rmSync, symlinkSync, writeFileSync } from 'node:fs';
 import { createServer } from 'node:net';
 import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
@@ -368,6 +368,29 @@ test('the list of models has pictures of them', async (t) => {
     assert.deepEqual(faults, []);
     await page.click('text=whale.pmesh');
     await whole(page);
+});
+
+test('the page of the documentation, with the package as npm packs it', async (t) => {
+    const root = resolve(import.meta.dirname, '../..');
+    const example = readFileSync(join(root, 'docs/examples/embed.html'), 'utf8');
+    for (const [, snippet] of readFileSync(join(root, 'docs/web.md'), 'utf8').matchAll(/```js\n([^`]*(?:`[^`]+`[^`]*)*?)```\n/g)) assert.ok(example.includes(snippet), snippet);
+    const place = mkdtempSync(join(tmpdir(), 'vsplit-page-'));
+    t.after(() => rmSync(place, { recursive: true, force: true }));
+    mkdirSync(join(place, 'node_modules/vsplit'), { recursive: true });
+    execFileSync('tar', ['-xzf', join(root, 'build/web/vsplit-0.1.0.tgz'), '-C', join(place, 'node_modules/vsplit'), '--strip-components=1']);
+    symlinkSync(join(root, 'lib/wasm/npm/node_modules/three'), join(place, 'node_modules/three'));
+    cpSync(join(folder, 'whale.pmesh'), join(place, 'whale.pmesh'));
+    cpSync(join(root, 'docs/examples/embed.html'), join(place, 'index.html'));
+    const server = await spoiled(place);
+    t.after(server.stop);
+    const page = await browser.newPage({ viewport: { width: 480, height: 320 } });
+    t.after(() => page.close());
+    const faults = [];
+    page.on('pageerror', (error) => faults.push(error.message));
+    await page.goto(`${server.url}index.html`);
+    await until(page, (n) => document.title === `${n} triangles` || document.title === `${n - 1} triangles`, Math.round(0.4 * whale.triangles));
+    await picture(page, 'embed');
+    assert.deepEqual(faults, []);
 });
 
 const port = () => new Promise((done) => { const s = createServer().listen(0, '127.0.0.1', () => { const { port: free } = s.address(); s.close(() => done(free)); }); });

@@ -47,6 +47,7 @@ class Session {
                 await this.follow();
             } catch (error) {
                 if (this.refetch(error, opened)) continue;
+                if (opened) this.progress(true);
                 const known = error instanceof VsplitError ? error : new VsplitError('malformed', String((error as Error)?.message ?? error));
                 post({ type: 'error', code: known.code, message: known.message, offset: known.offset === undefined ? undefined : known.offset + (opened ? this.start : 0) });
                 this.failed = true;
@@ -111,6 +112,7 @@ class Session {
         }
         this.front = new Uint8Array(0);
         post({ type: 'info', info: this.stream.info! });
+        this.progress(true);
     }
 
     /** Reads on until the front has so many bytes, or the file ends. */
