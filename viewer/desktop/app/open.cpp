@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "open.hpp"
 
+#include <fmt/format.h>
+
 #include <cstring>
 
 #include "cloud.hpp"
@@ -48,6 +50,18 @@ Result<studio::Source> open_source(const InputOptions& input, const Common& comm
     if (is_gltf(file->bytes, extension)) {
         auto scene = load_scene(input, file->bytes, exit);
         if (!scene) return scene.error();
+        if (scene->parts.size() > 1) {
+            // Each part is in a space of its own: one picture of all needs them where their nodes place them.
+            auto whole = load_mesh(input, exit);
+            if (!whole) return whole.error();
+            if (!common.quiet)
+                fmt::print(stderr, "vsplit: {}: {} meshes, taken as one without their materials\n",
+                           input.path, scene->parts.size());
+            source.mesh = std::move(whole->mesh);
+            source.vertex_of = std::move(whole->vertex_of);
+            source.file_vertices = whole->report.vertices_in;
+            return source;
+        }
         source.mesh = std::move(scene->mesh);
         source.part_of = scene->part_of;
         scene->mesh = {};
