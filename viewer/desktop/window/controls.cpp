@@ -162,6 +162,7 @@ std::vector<Line> StudioWindow::lines() const {
 
 void StudioWindow::refresh_panel() {
     panel_->set(lines(), window_->GetSize()[1]);
+    panel_stale_ = true;
     const std::string status =
         message_.empty() ? "CTRL + drag paints, SHIFT + drag erases, drag turns, F1 helps" : message_;
     status_->SetInput(status.c_str());

@@ -105,7 +105,6 @@ class StudioWindow {
     void refresh_panel();
     std::vector<Line> lines() const;
     void show_pane(Pane& pane, std::size_t level);
-    void repaint();
     void dab(int x, int y, bool erase);
     void click_select(int x, int y);
     std::optional<Hit> pick_at(int x, int y) const;
@@ -114,6 +113,7 @@ class StudioWindow {
     void move();
     void after_change(const std::string& what);
     void autosave();
+    void recover();
     std::string beside(const std::string& suffix) const;
     bool write(const std::string& path, std::span<const std::byte> bytes, bool overwrite);
     bool save();
@@ -124,7 +124,6 @@ class StudioWindow {
     void keep();
     void say(const std::string& text);
     void help();
-    void update_refined();
 
     std::unique_ptr<Document> document_;
     WindowOptions options_;
@@ -150,10 +149,10 @@ class StudioWindow {
     bool stroke_ = false, erase_ = false;
     int last_x_ = 0, last_y_ = 0;
     int dragging_ = kNothing;  // a slider
-    bool moving_ = false, question_ = false, stale_colours_ = false;
+    bool moving_ = false, question_ = false;
     double moved_at_ = 0;
     double budget_ = 30000;  // triangles that a moving picture may have
-    bool shown_coarse_ = false;
+    bool shown_coarse_ = false, panel_stale_ = true;
     std::string message_;
 };
 

@@ -19,7 +19,7 @@ namespace vsplit::studio {
 namespace {
 
 constexpr double kSettle = 0.25;  // seconds without motion until the full picture
-constexpr double kFrame = 0.024;  // seconds that a moving picture may take
+constexpr double kFrame = 0.026;  // seconds that a moving picture may take
 
 /// The trackball, but for what belongs to panel, brush and sliders.
 class Style : public vtkInteractorStyleTrackballCamera {
@@ -201,6 +201,9 @@ void StudioWindow::draw() {
     const double start = seconds_now();
     show_pane(left_, level_);
     if (split_) show_pane(right_, document_->level_for_ratio(right_ratio_));
+    // What the panel drew stays in the frame buffer: thirty texts are a third of a frame.
+    panel_renderer_->SetDraw(panel_stale_);
+    panel_stale_ = false;
     window_->Render();
     if (!moving_) return;
     window_->WaitForCompletion();
@@ -225,8 +228,8 @@ void StudioWindow::camera_moves() {
 }
 
 void StudioWindow::tick() {
-    if (rebake_.running() || !message_.empty()) refresh_panel();
     take_bake();
+    if (rebake_.running()) refresh_panel();
     if (moving_ && !stroke_ && dragging_ == kNothing && seconds_now() - moved_at_ > kSettle) {
         moving_ = false;
         draw();
@@ -335,6 +338,7 @@ void StudioWindow::run() {
         vtkCommand::ConfigureEvent,
         [](vtkObject*, unsigned long, void* self, void*) { static_cast<StudioWindow*>(self)->resized(); },
         interactor_);
+    recover();
     draw();
     interactor_->CreateRepeatingTimer(50);
     interactor_->Start();
