@@ -3,6 +3,7 @@
 //
 // The studio's controls: what the panel shows, and what its cells and the keys do.
 #include <fmt/format.h>
+#include <vtkCamera.h>
 
 #include <algorithm>
 #include <cmath>
@@ -197,6 +198,8 @@ void StudioWindow::set_level(std::size_t level) {
 }
 
 void StudioWindow::set_split(bool on) {
+    // Half as wide: what was in view stays in view.
+    if (on != split_) left_.renderer->GetActiveCamera()->Dolly(on ? 0.55 : 1 / 0.55);
     split_ = on;
     if (on) right_.live = std::make_unique<LiveMesh>(document_->live());
     layout();

@@ -65,6 +65,7 @@ MeshView::MeshView(vtkRenderer* renderer) : parts_(new Parts) {
     p.bar->SetPosition2(0.1, 0.6);
     p.bar->SetMaximumWidthInPixels(90);
     p.bar->UnconstrainedFontSizeOn();
+    p.bar->SetVerticalTitleSeparation(8);
     for (vtkTextProperty* text : {p.bar->GetTitleTextProperty(), p.bar->GetLabelTextProperty()}) {
         text->SetFontSize(14);
         text->SetColor(0.1, 0.12, 0.15);
