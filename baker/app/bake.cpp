@@ -175,6 +175,7 @@ int BakeCommand::run() const {
     auto result = bake::collapse(file->mesh, options, bar.callback());
     if (!result) return fail_input(input.path, result.error());
     const std::size_t triangles = file->mesh.triangles.size();
+    const auto moved = surface ? std::nullopt : origin_note(file->mesh);
     file->mesh = {};
     auto bytes = write_progressive_mesh(result->mesh, rounding());
     if (!bytes) return fail_output(output.path, bytes.error());
@@ -199,6 +200,7 @@ int BakeCommand::run() const {
                      {"fixed_vertices", result->report.fixed_vertices},
                      {"stopped_by", result->report.stopped_by},
                      {"weights", !mesh.weights.empty()},
+                     {"origin", mesh.origin},
                      {"bytes", bytes->size()},
                      {"seconds", seconds},
                      {"collapse_cpu_seconds", result->report.collapse_cpu_seconds},
@@ -218,6 +220,7 @@ int BakeCommand::run() const {
             with_commas(survey.components), with_commas(survey.boundary_edges),
             with_commas(survey.non_manifold_edges), file->report.format));
     for (const std::string& line : describe(file->report)) say(common, "  " + line);
+    if (moved) say(common, "  " + *moved);
     if (marked)
         for (const std::string& line : marked->describe()) say(common, "  " + line);
     if (survey.duplicate_triangles)

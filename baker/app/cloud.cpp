@@ -9,6 +9,7 @@
 #include <string_view>
 
 #ifdef VSPLIT_WITH_CGAL
+#include "input.hpp"
 #include "vsplit/bake/files.hpp"
 #include "vsplit/bake/points.hpp"
 #include "vsplit/bake/surface.hpp"
@@ -201,6 +202,15 @@ Result<CloudSurface> reconstruct_cloud(const std::string& path, std::span<const 
             dumped = bake::write_file(dump_file, data, force);
         };
     }
+    if (!file->cloud.positions.empty()) {
+        auto low = file->cloud.positions.front(), high = low;
+        for (const auto& p : file->cloud.positions)
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                low[axis] = std::min(low[axis], p[axis]);
+                high[axis] = std::max(high[axis], p[axis]);
+            }
+        reconstruct.origin = bake::local_origin(low, high);
+    }
     auto made = bake::reconstruct(file->cloud.positions, reconstruct, progress);
     if (!made) return failed(path, made.error(), false);
     if (!dumped) return failed(dump_file, dumped.error(), true);
@@ -218,6 +228,8 @@ Result<CloudSurface> reconstruct_cloud(const std::string& path, std::span<const 
                     with_commas(r.vertices),
                     r.components == 1 ? "1 component" : with_commas(r.components) + " components", r.genus,
                     r.watertight ? "watertight" : fmt::format("{} boundary loops", r.boundary_loops)));
+    if (const auto note = origin_note(surface.mesh)) surface.notes.push_back(*note);
+    surface.report["origin"] = surface.mesh.origin;
     if (r.components_dropped > 0)
         surface.notes.push_back(fmt::format("{} small components dropped ({} triangles)",
                                             with_commas(r.components_dropped),

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cstdio>
 #include <ctime>
 #include <filesystem>
@@ -125,6 +126,20 @@ std::string with_commas(std::uint64_t number) {
     std::string digits = std::to_string(number);
     for (std::size_t at = digits.size(); at > 3;) digits.insert(at -= 3, ",");
     return digits;
+}
+
+CLI::Validator percents() {
+    return CLI::Validator(
+        [](std::string& text) -> std::string {
+            if (text.empty() || text.back() != '%') return {};
+            double percent = 0;
+            const char* const end = text.data() + text.size() - 1;
+            const auto [stop, fault] = std::from_chars(text.data(), end, percent);
+            if (fault != std::errc{} || stop != end) return "'" + text + "' is no percentage";
+            text = fmt::format("{}", percent / 100);
+            return {};
+        },
+        "", "percents");
 }
 
 std::string short_number(double value) {

@@ -85,6 +85,10 @@ std::string with_commas(std::uint64_t number);
 /// Three significant digits, no exponent where it can be helped.
 std::string short_number(double value);
 
+/// Lets a ratio be said as "7.3%", too: what stands before the sign is divided by 100. Goes before a range
+/// check.
+CLI::Validator percents();
+
 /// Each registers one subcommand whose callback sets `exit`.
 void add_bake(CLI::App& app, int& exit);
 void add_reconstruct(CLI::App& app, int& exit);
@@ -93,6 +97,7 @@ void add_extract(CLI::App& app, int& exit);
 void add_lods(CLI::App& app, int& exit);
 void add_verify(CLI::App& app, int& exit);
 void add_sample(CLI::App& app, int& exit);
+void add_serve(CLI::App& app, int& exit);
 void add_studio(CLI::App& app, int& exit);  // viewer/desktop/app
 void add_render(CLI::App& app, int& exit);  // only with VSPLIT_VIEWER
 

@@ -121,7 +121,9 @@ void add_extract(CLI::App& app, int& exit) {
         ->required()
         ->type_name("FILE");
     command->output.add_to(*sub, "Mesh to write: .glb, .ply or .obj");
-    sub->add_option("--ratio", command->ratio, "Triangles kept over triangles of the input, 0 to 1")
+    sub->add_option("--ratio", command->ratio,
+                    "Triangles kept over triangles of the input, 0 to 1, or as 40%")
+        ->transform(percents())
         ->check(CLI::Range(0.0, 1.0));
     sub->add_option("--triangles", command->triangles, "At most so many triangles")
         ->check(CLI::NonNegativeNumber);

@@ -87,6 +87,12 @@ std::vector<std::string> describe(const bake::MeshReport& r) {
     return lines;
 }
 
+std::optional<std::string> origin_note(const Mesh& mesh) {
+    if (mesh.origin == std::array<double, 3>{}) return {};
+    return fmt::format("far from 0 for single precision: places are relative to ({}, {}, {})", mesh.origin[0],
+                       mesh.origin[1], mesh.origin[2]);
+}
+
 Json to_json(const bake::MeshReport& r) {
     return {{"format", r.format},
             {"vertices", r.vertices_in},

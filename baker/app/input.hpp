@@ -4,6 +4,7 @@
 // Any mesh or scene file as one mesh, weights applied.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "command.hpp"
@@ -24,6 +25,8 @@ Result<bake::MeshFile> load_mesh(const InputOptions& options, int& exit);
 
 /// What was met on the way, a line each, for people.
 std::vector<std::string> describe(const bake::MeshReport& report);
+/// Of a mesh whose places are relative to an origin, where that is.
+std::optional<std::string> origin_note(const Mesh& mesh);
 Json to_json(const bake::MeshReport& report);
 Json to_json(const bake::MeshSurvey& survey);
 

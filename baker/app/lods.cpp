@@ -205,8 +205,9 @@ void add_lods(CLI::App& app, int& exit) {
         ->required()
         ->type_name("FILE");
     sub->add_option("--ratios", command->ratios,
-                    "Triangles kept over triangles of the input, a comma between")
-        ->delimiter(',');
+                    "Triangles kept over triangles of the input, or percentages, a comma between")
+        ->delimiter(',')
+        ->transform(percents());
     sub->add_option("--errors", command->errors,
                     "Largest distances from the input, in the world's units, a comma between")
         ->delimiter(',');

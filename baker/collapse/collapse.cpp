@@ -54,6 +54,7 @@ Result<CollapseResult> collapse(const Mesh& mesh, const CollapseOptions& options
         result.report.unused_vertices = points.unused;
         result.report.degenerate_triangles = points.degenerate;
     }
+    result.mesh.origin = mesh.origin;
     result.report.collapse_cpu_seconds = cpu_seconds() - start;
     if (options.calibrate) {
         start = cpu_seconds();

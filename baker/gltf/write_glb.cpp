@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The vsplit authors
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <exception>
@@ -125,6 +126,8 @@ Result<std::vector<std::byte>> write_levels(std::span<const GltfLevel> levels, c
     if (sheet) material["doubleSided"] = true;  // its back can be seen
 
     json document = {{"asset", {{"version", "2.0"}, {"generator", "vsplit"}}}};
+    if (const auto& origin = levels.front().mesh.origin; origin != std::array<double, 3>{})
+        document["asset"]["extras"] = {{"origin", origin}};
     if (levels.size() > 1) {
         document["extensionsUsed"] = {"MSFT_lod"};
         json ids = json::array();

@@ -26,6 +26,7 @@ bool is_other_word(std::string_view word) {
 
 struct ObjReader {
     TextScan scan;
+    const Origin& origin;
     PolygonSoup soup{};
     /// Faces may name vertices that come later, so the real limit is known at the end only: a second pass
     /// finds the line.
@@ -54,9 +55,9 @@ struct ObjReader {
 
     Status vertex() {
         float xyz[3];
-        for (float& value : xyz) {
+        for (int axis = 0; axis < 3; ++axis) {
             scan.skip_blanks(true);
-            if (!scan.number(value)) return scan.expected("a coordinate");
+            if (!scan.coordinate(xyz[axis], origin[axis])) return scan.expected("a coordinate");
         }
         if (soup.positions.size() + 1 >= std::numeric_limits<std::uint32_t>::max())
             return scan.error(ErrorCode::kLimit, "more than 4,294,967,294 vertices");
@@ -94,16 +95,16 @@ struct ObjReader {
 
 }  // namespace
 
-Result<SoupFile> read_obj(std::span<const std::byte> bytes) {
-    ObjReader reader{TextScan(bytes)};
+Result<SoupFile> read_obj(std::span<const std::byte> bytes, const Origin& origin) {
+    ObjReader reader{TextScan(bytes), origin};
     if (Status status = reader.read(); !status) return status.error();
     if (reader.vertices_needed > reader.soup.positions.size()) {
-        ObjReader again{TextScan(bytes)};
+        ObjReader again{TextScan(bytes), origin};
         again.vertex_limit = reader.soup.positions.size();
         Status status = again.read();
         if (!status) return status.error();
     }
-    SoupFile file{std::move(reader.soup), {}};
+    SoupFile file{std::move(reader.soup), {}, true};
     file.report.format = "OBJ";
     return file;
 }

@@ -40,6 +40,7 @@ Keyword parse_keyword(std::string_view word) {
 
 struct OffReader {
     TextScan scan;
+    const Origin& origin;
     PolygonSoup soup{};
 
     Result<std::uint64_t> count(const char* what) {
@@ -54,9 +55,10 @@ struct OffReader {
         for (std::uint64_t v = 0; v < n; ++v) {
             scan.skip_space_and_comments();
             float xyz[3];
-            for (float& value : xyz) {
+            for (int axis = 0; axis < 3; ++axis) {
                 scan.skip_blanks();
-                if (!scan.number(value)) return scan.expected("a coordinate of vertex " + std::to_string(v));
+                if (!scan.coordinate(xyz[axis], origin[axis]))
+                    return scan.expected("a coordinate of vertex " + std::to_string(v));
             }
             int columns = 3;
             for (scan.skip_blanks(); !scan.at_line_end_or_comment(); scan.skip_blanks()) {
@@ -105,8 +107,8 @@ bool is_off(std::span<const std::byte> bytes) {
     return parse_keyword(scan.word()).found;
 }
 
-Result<SoupFile> read_off(std::span<const std::byte> bytes) {
-    OffReader reader{TextScan(bytes)};
+Result<SoupFile> read_off(std::span<const std::byte> bytes, const Origin& origin) {
+    OffReader reader{TextScan(bytes), origin};
     TextScan& scan = reader.scan;
     scan.skip_space_and_comments();
     TextScan after = scan;
@@ -148,7 +150,7 @@ Result<SoupFile> read_off(std::span<const std::byte> bytes) {
     if (!scan.at_end())
         return scan.error(ErrorCode::kMalformed, "more lines than the announced vertices and faces");
 
-    SoupFile file{std::move(reader.soup), {}};
+    SoupFile file{std::move(reader.soup), {}, true};
     file.report.format = "OFF";
     return file;
 }

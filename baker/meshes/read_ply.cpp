@@ -51,9 +51,9 @@ class TextRows {
     TextRows(std::span<const std::byte> bytes, const PlyHeader& header)
         : scan_(bytes.subspan(header.body), header.body_line) {}
 
-    bool number(PlyType, float& value) {
+    bool number(PlyType, float& value, double origin = 0) {
         scan_.skip_space();
-        return scan_.number(value);
+        return scan_.coordinate(value, origin);
     }
     bool list_count(PlyType, std::uint64_t& count) {
         scan_.skip_space();
@@ -95,12 +95,12 @@ class BinaryRows {
           swapped_((header.encoding == PlyEncoding::kBigEndian) ==
                    (std::endian::native == std::endian::little)) {}
 
-    bool number(PlyType type, float& value) {
+    bool number(PlyType type, float& value, double origin = 0) {
         if (left() < size_of(type)) return false;
-        if (type == PlyType::kFloat)
+        if (type == PlyType::kFloat && origin == 0)
             value = load<float>(p_, swapped_);  // Keeps the bits, of a NaN too.
         else
-            value = static_cast<float>(load_as_double(type, p_, swapped_));
+            value = static_cast<float>(load_as_double(type, p_, swapped_) - origin);
         p_ += size_of(type);
         return true;
     }
@@ -165,6 +165,7 @@ struct PlyBody {
     Rows rows;
     std::uint64_t vertices;  ///< Faces may come first, so the header's count is the limit for indices.
     std::size_t weight = kNoProperty;
+    Origin origin{};
     PolygonSoup soup{};
 
     static std::string name(const PlyElement& element, std::uint64_t row) {
@@ -202,7 +203,7 @@ struct PlyBody {
                     continue;
                 }
                 float value = 0;
-                if (!rows.number(p.type, value))
+                if (!rows.number(p.type, value, role[k] < 0 ? 0 : origin[std::size_t(role[k])]))
                     return rows.expected("'" + p.name + "' of " + name(element, v), p.type);
                 if (role[k] >= 0) row_values[role[k]] = value;
                 if (k == weight) row_values[3] = value;
@@ -325,15 +326,17 @@ Status check_mesh_header(const PlyHeader& header) {
 }
 
 template <class Rows>
-Result<PolygonSoup> read_body(std::span<const std::byte> bytes, const PlyHeader& header, std::size_t weight) {
-    PlyBody<Rows> body{Rows(bytes, header), header.find("vertex")->count, weight};
+Result<PolygonSoup> read_body(std::span<const std::byte> bytes, const PlyHeader& header, std::size_t weight,
+                              const Origin& origin) {
+    PlyBody<Rows> body{Rows(bytes, header), header.find("vertex")->count, weight, origin};
     if (Status status = body.read(header); !status) return status.error();
     return std::move(body.soup);
 }
 
 }  // namespace
 
-Result<SoupFile> read_ply(std::span<const std::byte> bytes, const std::string& weight_property) {
+Result<SoupFile> read_ply(std::span<const std::byte> bytes, const std::string& weight_property,
+                          const Origin& origin) {
     const Result<PlyHeader> header = parse_ply_header(bytes);
     if (!header) return header.error();
     if (Status status = check_mesh_header(*header); !status) return status.error();
@@ -356,10 +359,14 @@ Result<SoupFile> read_ply(std::span<const std::byte> bytes, const std::string& w
 
     SoupFile file;
     const bool text = header->encoding == PlyEncoding::kText;
-    Result<PolygonSoup> soup =
-        text ? read_body<TextRows>(bytes, *header, weight) : read_body<BinaryRows>(bytes, *header, weight);
+    Result<PolygonSoup> soup = text ? read_body<TextRows>(bytes, *header, weight, origin)
+                                    : read_body<BinaryRows>(bytes, *header, weight, origin);
     if (!soup) return soup.error();
     file.soup = std::move(*soup);
+    for (const char* axis : {"x", "y", "z"}) {
+        const PlyType type = vertex.properties[vertex.find(axis)].type;
+        file.wide |= text || type == PlyType::kDouble || type == PlyType::kInt32 || type == PlyType::kUint32;
+    }
     file.report.format = text                                             ? "PLY (ascii)"
                          : header->encoding == PlyEncoding::kLittleEndian ? "PLY (binary little endian)"
                                                                           : "PLY (binary big endian)";

@@ -30,6 +30,7 @@ bool same_word(std::string_view word, std::string_view lower) {
 
 struct StlTextReader {
     TextScan scan;
+    const Origin& origin;
     PolygonSoup soup{};
 
     bool take(std::string_view lower) {
@@ -43,21 +44,21 @@ struct StlTextReader {
         if (take(lower)) return Ok{};
         return scan.expected("'" + std::string(lower) + "'");
     }
-    Status numbers(float (&xyz)[3]) {
-        for (float& value : xyz) {
+    Status numbers(float (&xyz)[3], const Origin& from) {
+        for (int axis = 0; axis < 3; ++axis) {
             scan.skip_space();
-            if (!scan.number(value)) return scan.expected("a number");
+            if (!scan.coordinate(xyz[axis], from[axis])) return scan.expected("a number");
         }
         return Ok{};
     }
     Status facet() {
         float xyz[3];
         if (Status s = must_take("normal"); !s) return s;
-        if (Status s = numbers(xyz); !s) return s;  // Normals follow from the corners.
+        if (Status s = numbers(xyz, {}); !s) return s;  // Normals follow from the corners.
         if (Status s = must_take("outer"); !s) return s;
         if (Status s = must_take("loop"); !s) return s;
         while (take("vertex")) {
-            if (Status s = numbers(xyz); !s) return s;
+            if (Status s = numbers(xyz, origin); !s) return s;
             soup.corners.push_back(static_cast<std::uint32_t>(soup.positions.size()));
             soup.positions.push_back({xyz[0], xyz[1], xyz[2]});
         }
@@ -95,10 +96,10 @@ bool is_stl_text(std::span<const std::byte> bytes) {
     return std::find(head.begin(), head.end(), std::byte{0}) == head.end();
 }
 
-Result<SoupFile> read_stl_text(std::span<const std::byte> bytes) {
-    StlTextReader reader{TextScan(bytes)};
+Result<SoupFile> read_stl_text(std::span<const std::byte> bytes, const Origin& origin) {
+    StlTextReader reader{TextScan(bytes), origin};
     if (Status status = reader.read(); !status) return status.error();
-    SoupFile file{std::move(reader.soup), {}};
+    SoupFile file{std::move(reader.soup), {}, true};
     file.report.format = "STL (ascii)";
     return file;
 }

@@ -5,6 +5,7 @@
 // All bytes are hostile. Counts are held against the bytes left before they are believed.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <span>
 #include <string>
@@ -17,12 +18,17 @@ namespace vsplit::bake {
 struct SoupFile {
     PolygonSoup soup;
     MeshReport report;
+    bool wide = false;  ///< The file may hold more digits than the floats in `soup`.
 };
 
-Result<SoupFile> read_obj(std::span<const std::byte> bytes);
-Result<SoupFile> read_ply(std::span<const std::byte> bytes, const std::string& weight_property);
-Result<SoupFile> read_off(std::span<const std::byte> bytes);
-Result<SoupFile> read_stl_text(std::span<const std::byte> bytes);
+/// What a reader takes off all coordinates before it rounds them to floats.
+using Origin = std::array<double, 3>;
+
+Result<SoupFile> read_obj(std::span<const std::byte> bytes, const Origin& origin);
+Result<SoupFile> read_ply(std::span<const std::byte> bytes, const std::string& weight_property,
+                          const Origin& origin);
+Result<SoupFile> read_off(std::span<const std::byte> bytes, const Origin& origin);
+Result<SoupFile> read_stl_text(std::span<const std::byte> bytes, const Origin& origin);
 Result<SoupFile> read_stl_binary(std::span<const std::byte> bytes);
 
 /// Whether the bytes are a text STL, which says "solid" as some binary files do, too.

@@ -74,24 +74,33 @@ class TextScan {
         return {first, static_cast<std::size_t>(p_ - first)};
     }
 
-    /// The number here, rounded once to the nearest float. Takes what C, Python and old Microsoft runtimes
-    /// print:
+    /// The number here, rounded once to the nearest float (or double). Takes what C, Python and old Microsoft
+    /// runtimes print:
     /// "+1", "nan", "-nan(ind)", "inf", "1.#INF", "-1.#IND". Too large is infinite, too small is zero.
-    bool number(float& value) {
+    template <class T>
+    bool number(T& value) {
         const char* first = p_;
         if (first != end_ && *first == '+' && first + 1 != end_ && first[1] != '-') ++first;
         const auto [last, problem] = std::from_chars(first, end_, value);
         if (problem == std::errc::invalid_argument) return false;
-        if (problem == std::errc::result_out_of_range) value = out_of_range(first, last);
+        if (problem == std::errc::result_out_of_range) value = out_of_range<T>(first, last);
         p_ = last;
         if (p_ != end_ && *p_ == '#' && last[-1] == '.') {
             const std::string_view rest = word();
-            value = rest.starts_with("#INF") ? std::copysign(std::numeric_limits<float>::infinity(), value)
-                                             : std::numeric_limits<float>::quiet_NaN();
+            value = rest.starts_with("#INF") ? std::copysign(std::numeric_limits<T>::infinity(), value)
+                                             : std::numeric_limits<T>::quiet_NaN();
             return rest.starts_with("#INF") || rest.starts_with("#IND") || rest.starts_with("#QNAN") ||
                    rest.starts_with("#SNAN");
         }
         return at_delimiter();
+    }
+    /// A number less `origin`, of which no digit is lost before.
+    bool coordinate(float& value, double origin) {
+        if (origin == 0) return number(value);
+        double wide = 0;
+        if (!number(wide)) return false;
+        value = static_cast<float>(wide - origin);
+        return true;
     }
     bool integer(std::int64_t& value) {
         const auto [last, problem] = from_integer(value);
@@ -145,16 +154,17 @@ class TextScan {
         if (first != end_ && *first == '+' && first + 1 != end_ && first[1] != '-') ++first;
         return std::from_chars(first, end_, value);
     }
-    static float out_of_range(const char* first, const char* last) {
+    template <class T>
+    static T out_of_range(const char* first, const char* last) {
         double wide = 0;
-        if (std::from_chars(first, last, wide).ec == std::errc()) return static_cast<float>(wide);
+        if (std::from_chars(first, last, wide).ec == std::errc()) return static_cast<T>(wide);
         const std::string_view text(first, static_cast<std::size_t>(last - first));
         const bool negative = text.starts_with('-');
         const std::size_t e = text.find_first_of("eE");
         const std::string_view digits = text.substr(negative, e == text.npos ? text.npos : e - negative);
         const bool tiny = e != text.npos ? text.substr(e).find('-') != text.npos
                                          : digits.find_first_not_of('0') == digits.find('.');
-        const float value = tiny ? 0.0f : std::numeric_limits<float>::infinity();
+        const T value = tiny ? T{0} : std::numeric_limits<T>::infinity();
         return negative ? -value : value;
     }
 

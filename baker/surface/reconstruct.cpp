@@ -294,7 +294,7 @@ class Reconstructor {
         }
         if (!stages_.begin("tidy", 0.9)) return stopped();
         // Repairs see the coordinates as they will be stored: rounding may bring vertices together.
-        const Vec3 origin = options_.relative ? frame.origin : Vec3{};
+        const Vec3 origin{options_.origin[0], options_.origin[1], options_.origin[2]};
         const Vec3 shift = frame.origin - origin;
         for (Vec3& p : crust.points) {
             const Vec3 q = p * (1 / frame.scale) + shift;
@@ -318,7 +318,7 @@ class Reconstructor {
             out_.mesh.positions.push_back(
                 {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)});
         out_.mesh.triangles = std::move(crust.triangles);
-        out_.origin = {origin.x, origin.y, origin.z};
+        out_.mesh.origin = options_.origin;
         stages_.end();
         if (progress_ && !progress_("done", 1)) return stopped();
         return std::move(out_);

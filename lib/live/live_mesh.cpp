@@ -82,6 +82,7 @@ Mesh LiveMesh::snapshot() const {
              {a.values.begin(), a.values.begin() + std::ptrdiff_t(a.components * p.size())}});
     if (!mesh_.groups.empty())
         mesh.groups.assign(mesh_.groups.begin(), mesh_.groups.begin() + std::ptrdiff_t(t.size()));
+    mesh.origin = mesh_.origin;
     return mesh;
 }
 

@@ -68,6 +68,8 @@ const char* mesh_fault(const Mesh& mesh) {
         if (!(w >= 0)) return "a weight is negative or not a number";
     if (!mesh.groups.empty() && mesh.groups.size() != mesh.triangles.size())
         return "there are not as many groups as triangles";
+    for (const double x : mesh.origin)
+        if (!std::isfinite(x)) return "the origin is not finite";
     return attributes_fault(mesh.attributes, mesh.positions.size());
 }
 

@@ -77,6 +77,8 @@ const char* progressive_mesh_fault(const ProgressiveMesh& mesh) {
 
     if (!mesh.groups.empty() && mesh.groups.size() != triangle_count)
         return "there are not as many groups as triangles";
+    for (const double x : mesh.origin)
+        if (!std::isfinite(x)) return "the origin is not finite";
     if (const char* fault = attributes_fault(mesh.attributes, vertex_count)) return fault;
     if (mesh.moved_values.size() != mesh.attributes.size())
         return "moves do not have the attributes of the vertices";

@@ -23,6 +23,8 @@ class Exits(CommandTest):
                      ('extract', 'model.pmesh', '-o', 'x.ply'), ('extract', 'model.pmesh', '--ratio', '0.5', '--triangles', '7', '-o', 'x.ply'),
                      ('extract', 'model.pmesh', '--ratio', '1.5', '-o', 'x.ply'), ('extract', 'model.pmesh', '--ratio', '-0.5', '-o', 'x.ply'),
                      ('extract', 'model.pmesh', '--ratio', 'nan', '-o', 'x.ply'), ('extract', 'model.pmesh', '--ratio', 'half', '-o', 'x.ply'),
+                     ('extract', 'model.pmesh', '--ratio', '%', '-o', 'x.ply'), ('extract', 'model.pmesh', '--ratio', '101%', '-o', 'x.ply'),
+                     ('extract', 'model.pmesh', '--ratio', 'nan%', '-o', 'x.ply'), ('lods', 'model.pmesh', '--ratios', '50%,0%', '-o', 'x.glb'),
                      ('extract', 'model.pmesh', '--triangles', '-3', '-o', 'x.ply'), ('extract', 'model.pmesh', '--error', '-1', '-o', 'x.ply'),
                      ('extract', 'model.pmesh', '--error', 'nan', '-o', 'x.ply'),
                      ('extract', 'model.pmesh', '--ratio', '0.5', '-o', 'x.fbx'), ('extract', 'model.pmesh', '--ratio', '0.5', '-o', 'x'),

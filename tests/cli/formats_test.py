@@ -101,6 +101,16 @@ class Formats(CommandTest):
             last = report['triangles']
         self.assertEqual(last, full['base']['triangles'])
 
+    def test_percentages_are_ratios(self):
+        self.sample('whale.ply', 1500, 'whale')
+        self.vsplit('bake', 'whale.ply', '-o', 'whale.pmesh')
+        for percent, ratio in (('40%', '0.4'), ('7.3%', '0.073'), ('100%', '1'), ('1e1%', '0.1')):
+            for name, said in (('percent', percent), ('ratio', ratio)):
+                self.vsplit('extract', 'whale.pmesh', '--ratio', said, '-o', name + '.ply', '--force')
+                self.vsplit('lods', 'whale.pmesh', '--ratios', '1,' + said, '-o', name + '.glb', '--force')
+            self.assertEqual(self.path('percent.ply').read_bytes(), self.path('ratio.ply').read_bytes())
+            self.assertEqual(self.path('percent.glb').read_bytes(), self.path('ratio.glb').read_bytes())
+
     def test_info_says_what_extract_gives(self):
         self.baked(triangles=3000)
         info = self.json('info', 'model.pmesh')

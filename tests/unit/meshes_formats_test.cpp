@@ -282,3 +282,68 @@ TEST_CASE("Weights as text: exactly one a vertex, in the file's order") {
     CHECK(file->mesh.weights == std::vector<float>{1, 8, 9, 4});
     CHECK(apply_weights(*file, std::vector<float>{1, 2, 3, 4}).error().code == ErrorCode::kArgument);
 }
+
+TEST_CASE("Far from 0, the digits of text and doubles are kept by an origin") {
+    // Map coordinates: metres, to the millimetre. Floats there are half a metre apart.
+    const std::array<double, 3> corner{500000.125, 4500000.25, 100};
+    std::string obj,
+        ply =
+            "ply\nformat ascii 1.0\nelement vertex 4\nproperty double x\nproperty double y\n"
+            "property double z\nelement face 2\nproperty list uchar int vertex_indices\n"
+            "end_header\n",
+        off = "OFF\n4 2 0\n", stl = "solid a\n";
+    const double step[4][3] = {{0, 0, 0}, {0.001, 0, 0}, {1, 2, 0.5}, {0, 0.002, 0.25}};
+    std::array<std::string, 4> rows;
+    for (int v = 0; v < 4; ++v) {
+        char row[128];
+        std::snprintf(row, sizeof(row), "%.3f %.3f %.3f\n", corner[0] + step[v][0], corner[1] + step[v][1],
+                      corner[2] + step[v][2]);
+        rows[std::size_t(v)] = row;
+        obj += "v " + rows[std::size_t(v)];
+        ply += row;
+        off += row;
+    }
+    obj += "f 1 2 3\nf 1 3 4\n";
+    ply += "3 0 1 2\n3 0 2 3\n";
+    off += "3 0 1 2\n3 0 2 3\n";
+    for (const auto& t : {std::array{0, 1, 2}, std::array{0, 2, 3}}) {
+        stl += "facet normal 0 0 0\nouter loop\n";
+        for (const int v : t) stl += "vertex " + rows[std::size_t(v)];
+        stl += "endloop\nendfacet\n";
+    }
+    stl += "endsolid\n";
+    const auto check = [&](const MeshFile& file) {
+        CHECK(file.mesh.origin[1] != 0);
+        REQUIRE(file.mesh.positions.size() == 4);
+        for (std::size_t v = 0; v < 4; ++v) {
+            const Float3& p = file.mesh.positions[v];
+            const double got[3] = {p.x, p.y, p.z};
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                const double said = std::round((corner[axis] + step[v][axis]) * 1000) / 1000;
+                CHECK(std::fabs(file.mesh.origin[axis] + got[axis] - said) < 2e-7);
+            }
+        }
+    };
+    for (const auto& [text, extension] :
+         {std::pair{obj, ".obj"}, {ply, ".ply"}, {off, ".off"}, {stl, ".stl"}}) {
+        INFO(extension);
+        const auto file = parse(text, extension);
+        REQUIRE(file.ok());
+        check(*file);
+        // Doubles and text are written so that this comes back.
+        for (const bool as_ply : {true, false}) {
+            const auto bytes = as_ply ? encode_ply(file->mesh) : encode_obj(file->mesh);
+            const auto again = parse_mesh(bytes, as_ply ? ".ply" : ".obj");
+            REQUIRE(again.ok());
+            check(*again);
+            CHECK(again->mesh.positions == file->mesh.positions);
+            CHECK(again->mesh.origin == file->mesh.origin);
+        }
+    }
+    // Near enough, nothing is moved; a file of floats has no digits to lose.
+    CHECK(parse("v 100 0 0\nv 101 0 0\nv 100 1 0\nf 1 2 3\n", ".obj")->mesh.origin ==
+          std::array<double, 3>{});
+    CHECK(local_origin({5, 5, 5}, {5, 5, 5}) == std::array<double, 3>{});
+    CHECK(local_origin({-1e308, 0, 0}, {1e308, 0, 0}) == std::array<double, 3>{});
+    CHECK(local_origin({1000, 0, 0}, {1001, 1, 1}) == std::array<double, 3>{1000, 0, 0});
+}

@@ -155,14 +155,14 @@ TEST_CASE("noise and outliers: still closed and manifold") {
     check_closed(run(cleaned->cloud.positions), 1, 1);
 }
 
-TEST_CASE("far from the origin, and tiny: relative positions keep their digits") {
+TEST_CASE("far from the origin, and tiny: an origin keeps the digits") {
     auto points = sphere_points(1500, {500000, 5400000, 300}, 2, 11);
     ReconstructOptions options;
-    options.relative = true;
+    options.origin = {500000, 5400000, 0};
     const Reconstruction r = run(points, options);
     check_closed(r, 1, 0);
     CHECK(volume(r.mesh) == Approx(8 * 4.18879).epsilon(0.02));
-    CHECK(r.origin[1] == Approx(5400000).margin(1));
+    CHECK(r.mesh.origin == options.origin);
     points = sphere_points(1500, {0, 0, 0}, 1e-20, 11);
     check_closed(run(points), 1, 0);
 }

@@ -56,6 +56,9 @@ struct Mesh {
     std::vector<Attribute> attributes{};
     /// Which material or part a triangle belongs to: empty (all 0), or one per triangle.
     std::vector<std::uint32_t> groups{};
+    /// What was taken off the source's coordinates, finite; add it for the place there. Zeros but for sources
+    /// so far from 0 for their size (map projections) that floats would lose what tells their vertices apart.
+    std::array<double, 3> origin{};
 };
 
 /// What breaks the rules of attributes of `vertices` vertices, in words, or nullptr.

@@ -5,6 +5,7 @@
 // (Hoppe, Progressive Meshes, SIGGRAPH 1996), kept as patches to plain index and vertex buffers.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -66,6 +67,7 @@ struct ProgressiveMesh {
     /// Parallel to `attributes`: the values of the vertices in `moves` after their move, components of each.
     std::vector<std::vector<float>> moved_values;
     std::vector<std::uint32_t> groups;  ///< Empty (all 0), or one per triangle: never changes.
+    std::array<double, 3> origin{};     ///< As Mesh::origin, of all levels.
 
     std::size_t levels() const { return splits.size() + 1; }
 };

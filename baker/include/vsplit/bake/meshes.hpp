@@ -4,6 +4,7 @@
 // Mesh files in and out: OBJ, PLY, OFF, STL. (Scenes: gltf.hpp. Point clouds: points.hpp.)
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -93,8 +94,14 @@ Result<MeshFile> assemble_mesh(PolygonSoup&& soup, Weld weld, MeshReport report)
 /// Reads a mesh file's bytes. The format is told by content, then by `extension` (".obj"; any case).
 /// Errors carry the offset (binary) or line (text); hostile bytes are safe: counts are checked against the
 /// size of the input before anything is allocated. A file without a triangle is an error (kMalformed).
+/// Coordinates of text, doubles or large integers that are far from 0 are taken relative to Mesh::origin.
 Result<MeshFile> parse_mesh(std::span<const std::byte> bytes, std::string_view extension,
                             const ReadOptions& options = {});
+
+/// The origin that a source with these bounds is moved to: zeros unless its coordinates are more than 256
+/// times its longest side from 0, where floats would keep less than 16 bits of it. A multiple of a power of
+/// two of about that side, near the middle. A box without extent, or not finite, gives zeros.
+std::array<double, 3> local_origin(const std::array<double, 3>& low, const std::array<double, 3>& high);
 
 /// Per-vertex weights as text: one number a line (blank lines and # comments skipped). Exactly `count` of
 /// them, each >= 0; "inf" is allowed (never collapses). With MeshReport::vertices_in for `count`, see
@@ -107,9 +114,11 @@ Status apply_weights(MeshFile& file, std::span<const float> weights);
 
 MeshSurvey survey_mesh(const Mesh& mesh);
 
-/// PLY, binary little endian; weights as the float property "quality". Positions exact.
+/// PLY, binary little endian; weights as the float property "quality". Positions exact: floats, or with an
+/// origin doubles that it is added to.
 std::vector<std::byte> encode_ply(const Mesh& mesh);
-/// OBJ text; positions with the fewest digits that read back exactly. Weights are not part of OBJ.
+/// OBJ text; positions with the fewest digits that read back exactly, the origin added. Weights are not part
+/// of OBJ.
 std::vector<std::byte> encode_obj(const Mesh& mesh);
 
 }  // namespace vsplit::bake

@@ -45,9 +45,9 @@ struct ReconstructOptions {
     unsigned dumps = 0;  ///< Of CrustDump; each is handed to `sink`.
     /// Receives each dump's file name and bytes. Called from the thread that called reconstruct().
     std::function<void(std::string_view name, std::span<const std::byte> bytes)> sink;
-    /// Subtract Reconstruction::origin from all positions. Coordinates far from 0 (map projections) keep
-    /// their digits so.
-    bool relative = false;
+    /// Taken off all positions: the mesh's Mesh::origin. Coordinates far from 0 (map projections) keep their
+    /// digits so; see local_origin() in meshes.hpp.
+    std::array<double, 3> origin{};
     double open_reach = 6;  ///< With `open`: rim triangles longer than this many spacings are trimmed off.
     /// 0: all, except for the triangulation itself, which runs on more than one only if told how many. The
     /// result does not depend on it.
@@ -90,8 +90,7 @@ struct MedialAxis {
 struct Reconstruction {
     Mesh mesh;  ///< Oriented 2-manifold, normals outward; closed unless `open`.
     CrustReport report;
-    MedialAxis medial_axis;          ///< Empty unless asked for.
-    std::array<double, 3> origin{};  ///< What `relative` subtracted; zeros otherwise.
+    MedialAxis medial_axis;  ///< Empty unless asked for. In the coordinates of the samples.
 };
 
 /// Reconstructs the surface that `positions` sample. Best cleaned first (points.hpp). Duplicates are merged.
