@@ -82,17 +82,24 @@ Result<studio::Source> open_source(const InputOptions& input, const Common& comm
 Result<std::unique_ptr<studio::Document>> open_document(const InputOptions& input, const CollapseFlags& flags,
                                                         const std::string& marks, const Common& common,
                                                         int& exit) {
+    auto source = open_source(input, common, exit);
+    if (!source) return source.error();
+    return document_of(std::move(*source), flags, marks, common, exit);
+}
+
+Result<std::unique_ptr<studio::Document>> document_of(studio::Source source, const CollapseFlags& flags,
+                                                      const std::string& marks, const Common& common,
+                                                      int& exit) {
+    const std::string path = source.path;
     bake::CollapseOptions options;
     if (const auto reason = flags.set(options)) {
         exit = fail_usage(*reason);
         return Error{ErrorCode::kArgument, *reason, Error::kNowhere, 0};
     }
-    auto source = open_source(input, common, exit);
-    if (!source) return source.error();
     ProgressBar bar(common);
-    auto document = studio::Document::open(std::move(*source), options, bar.callback());
+    auto document = studio::Document::open(std::move(source), options, bar.callback());
     if (!document) {
-        exit = fail_input(input.path, document.error());
+        exit = fail_input(path, document.error());
         return document;
     }
     if (marks.empty()) return document;
