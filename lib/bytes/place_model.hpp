@@ -91,6 +91,7 @@ inline std::uint32_t departure_class(std::int32_t difference, std::uint32_t scal
 
 template <class Coder>
 Lattice3 PlaceModel::code(Coder& coder, PlaceGuides& g, const Lattice3& place) {
+    if (!Coder::kWrites && !Coder::kDecodes) return place;
     const std::size_t c = g.across, a = c == 0 ? 1 : 0, b = c == 2 ? 1 : 2,
                       kind = static_cast<std::size_t>(g.kind);
     const auto along = mix(g, 0), across = mix(g, 1);

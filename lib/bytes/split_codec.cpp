@@ -75,6 +75,7 @@ bool SplitCodec::ask(Coder& coder, std::uint32_t v, bool splits) {
 
 template <class Coder>
 const char* SplitCodec::code_mark(Coder& coder, std::uint32_t& primary) {
+    if (!Coder::kWrites && !Coder::kDecodes) return nullptr;
     if (sparse_) {
         // Round the vertices, from the last one on.
         const std::uint32_t gap = gap_.code(
@@ -85,6 +86,12 @@ const char* SplitCodec::code_mark(Coder& coder, std::uint32_t& primary) {
         return nullptr;
     }
     for (std::uint32_t v; (v = asks_.next()) != kNoVertex;) {
+        // The next in line are most likely the next in memory.
+        if (v + 16 < live.vertex_count()) {
+            live.fetch(v + 16, 0);
+            live.fetch(v + 8, 1);
+            live.fetch(v + 3, 2);
+        }
         if (ask(coder, v, v == primary)) {
             primary = v;
             return nullptr;
@@ -287,7 +294,7 @@ const char* SplitCodec::code_taken(Coder& coder, const SplitPlan& wanted, std::s
         is_run_ = coder.bit(regular_[star_.closed],
                             !Coder::kDecodes && find_cut(taken, wanted, birth_id(index), cut));
         if (is_run_) {
-            run_ = cut_.code(coder, live, star_, cut);
+            run_ = Coder::kWrites || Coder::kDecodes ? cut_.code(coder, live, star_, cut) : cut;
             take_run(birth_id(index), out);
             return Coder::kDecodes && out.taken.size() > room.corners
                        ? "a block changes more corners than it announces"

@@ -94,7 +94,7 @@ class SplitCodec {
     /// canonical order. The reason if the stream contradicts itself.
     template <class Coder>
     const char* code_split(Coder& coder, std::uint32_t primary, const SplitPlan& wanted, SplitPlan& out);
-    /// Makes the split in the live mesh.
+    /// Makes the split that was just coded in the live mesh.
     void apply(const SplitPlan& plan);
 
     const StreamShape& shape() const { return shape_; }
@@ -139,6 +139,8 @@ class SplitCodec {
     bool find_cut(std::span<const std::uint32_t> taken, const SplitPlan& wanted, std::uint32_t child,
                   Cut& cut) const;
     void take_run(std::uint32_t child, SplitPlan& out);
+    /// The split at hand, if it is a run of its parent's fan and nothing else.
+    void apply_run(const SplitPlan& plan);
     void predict_values(std::uint32_t parent, const SplitPlan& out);
     std::uint32_t birth_id(std::size_t index) const {
         return live.vertex_count() + static_cast<std::uint32_t>(index);
@@ -172,11 +174,11 @@ class SplitCodec {
     // The birth at hand.
     Star star_;
     Cut run_;
-    bool is_run_ = false;
+    bool is_run_ = false, all_implied_ = false;
     Ring child_ring_, parent_ring_;
     PlaceGuides guides_;
     std::vector<Triangle> implied_triangles_;
-    std::vector<std::uint32_t> implied_groups_, near_, scratch_, touched_;
+    std::vector<std::uint32_t> implied_groups_, near_, scratch_, touched_, kept_, run_corners_;
     std::vector<std::int32_t> predicted_;
     std::vector<std::uint32_t> scales_;
     std::vector<bool> used_;

@@ -211,6 +211,7 @@ const char* SplitCodec::code_triangles(Coder& coder, const SplitPlan& wanted, Sp
     // Encoder: which of the triangles asked for are the implied ones?
     used_.assign(wanted.triangles.size(), false);
     bool all = true;
+    all_implied_ = false;
     if (!Coder::kDecodes)
         for (const Triangle& implied : implied_triangles_) {
             std::uint32_t i = 0;
@@ -229,6 +230,7 @@ const char* SplitCodec::code_triangles(Coder& coder, const SplitPlan& wanted, Sp
             out.sources.clear();
             used_.assign(wanted.triangles.size(), false);
         }
+        all_implied_ = all;
         if (all) {
             out.triangles = implied_triangles_;
             for (std::size_t i = 0; i < implied_triangles_.size(); ++i)
@@ -339,7 +341,71 @@ void SplitCodec::code_base(Coder& coder) {
 
 // ---- What a split does
 
+void SplitCodec::apply_run(const SplitPlan& plan) {
+    const std::size_t stride = shape_.stride();
+    const SplitPlan::Birth& birth = plan.births[0];
+    const std::uint32_t p = birth.parent, child = live.vertex_count(), n = star_.size,
+                        ring = star_.ring_size(), begin = run_.begin, length = run_.length;
+    const Lattice3 was = live.vertices[p].at;
+    if (!plan.moves.empty()) {
+        live.vertices[p].at = plan.moves[0].at;
+        if (shape_.lossless) finer[p] = plan.moves[0].finer;
+        std::copy_n(plan.move_values.begin(), stride,
+                    values.begin() + static_cast<std::ptrdiff_t>(p * stride));
+    }
+    live.add_vertex(birth.at);
+    values.insert(values.end(), plan.birth_values.begin(), plan.birth_values.end());
+    if (shape_.lossless) finer.push_back(birth.finer);
+    LiveVertex &parent = live.vertices[p], &born = live.vertices[child];
+    Lattice3 stays, goes;  // by how much the centre of a sector moves: the parent's, the child's
+    for (std::size_t k = 0; k < 3; ++k) stays[k] = parent.at[k] - was[k], goes[k] = birth.at[k] - was[k];
+    const auto taken = [&](std::uint32_t i) { return (i >= begin ? i : i + n) - begin < length; };
+    kept_.clear();
+    run_corners_.clear();
+    std::array<std::uint32_t, 3> born_ring{}, parent_ring{};
+    bool before = star_.closed && taken(n - 1);
+    for (std::uint32_t i = 0; i < ring; ++i) {
+        LiveVertex& here = live.vertices[star_.ring[i]];
+        here.touched = sweep_;
+        asks_.add(star_.ring[i]);
+        // The sectors on both sides of ring vertex i.
+        const bool is_left = star_.closed || i > 0, is_right = star_.closed || i < n;
+        const bool right = is_right && taken(i);
+        const Lattice3 none{}, &a = !is_left ? none : before ? goes : stays,
+                              &b = !is_right ? none : right ? goes : stays;
+        for (std::size_t k = 0; k < 3; ++k) {
+            here.ring[k] += static_cast<std::uint32_t>(a[k] + b[k]);
+            const auto at = static_cast<std::uint32_t>(here.at[k]);
+            const std::uint32_t sectors = std::uint32_t{is_left} + std::uint32_t{is_right};
+            const std::uint32_t in = std::uint32_t{is_left && before} + std::uint32_t{right};
+            born_ring[k] += in * at;
+            parent_ring[k] += (sectors - in) * at;
+        }
+        if (is_right) {
+            const std::uint32_t t = star_.sector[i];
+            Triangle& c = live.triangles[t];
+            const std::uint32_t k = c[0] == p ? 0 : c[1] == p ? 1 : 2;
+            if (right) c[k] = child;
+            (right ? run_corners_ : kept_).push_back(3 * t + k);
+        }
+        before = right;
+    }
+    born.ring = born_ring;
+    parent.ring = parent_ring;
+    born.acted = born.touched = parent.acted = parent.touched = sweep_;
+    asks_.add(p);
+    asks_.add(child);
+    live.relink(p, kept_);
+    live.relink(child, run_corners_);
+    for (const Triangle& triangle : plan.triangles) live.add_triangle(triangle);
+    if (shape_.group_bits > 0) groups.insert(groups.end(), plan.groups.begin(), plan.groups.end());
+}
+
 void SplitCodec::apply(const SplitPlan& plan) {
+    if (is_run_ && plan.births.size() == 1 && plan.triangles.size() == implied_triangles_.size() &&
+        all_implied_ &&
+        (plan.moves.empty() || (plan.moves.size() == 1 && plan.moves[0].vertex == plan.births[0].parent)))
+        return apply_run(plan);
     const std::size_t stride = shape_.stride();
     const std::uint32_t first = live.vertex_count();
     // Triangles whose places change: all around a vertex that moves, else those that are taken.
