@@ -28,6 +28,8 @@ struct WholeNumbers {
     /// Per vertex: it is born where its only parent was, and the parent moves away with it alone. Then the
     /// two change names, and nothing moves.
     std::vector<bool> traded;
+    /// Per birth and move: the vertex moves again, and until then any place nearby will do.
+    std::vector<bool> birth_rough, move_rough;
 
     StreamShape shape() const { return shape_of(details, weights, lossless, largest_group); }
 };

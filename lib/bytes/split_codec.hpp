@@ -27,11 +27,13 @@ struct SplitPlan {
         std::array<std::uint32_t, 3>
             finer{};  ///< zigzag of the float's distance from its lattice point's, if lossless.
         std::uint32_t taken_end = 0;  ///< In `taken`.
+        bool rough = false;           ///< Encoder: the vertex moves again, so that any place nearby will do.
     };
     struct Move {
         std::uint32_t vertex = 0;
         Lattice3 at{};
         std::array<std::uint32_t, 3> finer{};
+        bool rough = false;  ///< As of a birth.
     };
     std::vector<Birth> births;
     std::vector<std::uint32_t> taken;  ///< Corners that go over to the births, ascending within each.
@@ -163,7 +165,7 @@ class SplitCodec {
     std::array<BitModel, 2> one_birth_, regular_, implied_, place_moves_, same_move_, same_place_,
         group_stays_;
     std::array<BitModel, 3> moved_;
-    std::array<BitModel, 2> twin_moved_;
+    std::array<BitModel, 2> twin_moved_, rough_;
     BitModel in_mask_;
     NumberModel births_, twin_, far_, moves_, moved_far_, extra_, corner_birth_, corner_parent_, corner_ring_,
         corner_far_;

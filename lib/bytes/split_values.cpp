@@ -48,7 +48,8 @@ void SplitCodec::code_birth_place(Coder& coder, const SplitPlan& wanted, std::si
     } else {
         if (is_run_) {
             guides_ = place_.guide_birth(live, birth.parent, child_ring_, moving);
-            birth.at = place_.code(coder, guides_, asked.at);
+            const bool rough = moving && !shape_.lossless && coder.bit(rough_[0], asked.rough);
+            birth.at = place_.code(coder, guides_, asked.at, rough);
             if (!Coder::kDecodes && fit) fit->add(guides_, birth.at);
         } else {
             birth.at =
@@ -82,7 +83,8 @@ void SplitCodec::code_move(Coder& coder, const SplitPlan& wanted, std::size_t wh
     } else if (coder.bit(place_moves_[guided], asked.at != now || asked.finer != finer_now)) {
         if (guided) {
             PlaceGuides guides = place_.guide_move(live, vertex, parent_ring_, out.births.back().at);
-            move.at = place_.code(coder, guides, asked.at);
+            const bool rough = !shape_.lossless && coder.bit(rough_[1], asked.rough);
+            move.at = place_.code(coder, guides, asked.at, rough);
             if (!Coder::kDecodes && fit) fit->add(guides, move.at);
         } else {
             move.at = place_.code_free(coder, now, asked.at);
