@@ -171,7 +171,8 @@ Lattice3 LiveStars::bump(std::uint32_t vertex) const {
     Lattice3 out{};
     if (v.star == 0 || v.star > 128) return out;
     for (std::size_t i = 0; i < 3; ++i)
-        out[i] = static_cast<std::int32_t>(16 * std::int64_t{v.at[i]} - mean16(static_cast<std::int32_t>(v.ring[i]), 2 * v.star));
+        out[i] = static_cast<std::int32_t>(16 * std::int64_t{v.at[i]} -
+                                           mean16(static_cast<std::int32_t>(v.ring[i]), 2 * v.star));
     return out;
 }
 

@@ -89,10 +89,10 @@ inline std::uint32_t departure_class(std::int32_t difference, std::uint32_t scal
     return class_now + 2 < scale ? 0 : class_now > scale + 1 ? 2 : 1;
 }
 
-/// By how many digits a rough place is coarser along the surface: to an eighth of the ring's extent where it is
-/// flat, to a thirty-second where it bends, not at all where it is creased.
+/// By how many digits a rough place is coarser along the surface: to an eighth of the ring's extent where it
+/// is flat, to a thirty-second where it bends, not at all where it is creased.
 inline std::uint32_t rough_shift(std::uint32_t scale, std::uint32_t bent) {
-    const std::uint32_t digits = scale > 0 ? (scale - 1) / 2 : 0, keep = bent == 0 ? 5u : 7u;
+    const std::uint32_t digits = scale > 0 ? (scale - 1) / 2 : 0, keep = bent == 0 ? 4u : 6u;
     return bent == 2 || digits <= keep ? 0 : digits - keep;
 }
 

@@ -27,13 +27,14 @@ struct SplitPlan {
         std::array<std::uint32_t, 3>
             finer{};  ///< zigzag of the float's distance from its lattice point's, if lossless.
         std::uint32_t taken_end = 0;  ///< In `taken`.
-        bool rough = false;           ///< Encoder: the vertex moves again, so that any place nearby will do.
+        /// Encoder: how far from its triangles' planes the place may be, in steps; 0: it must be exact.
+        double tolerance = 0;
     };
     struct Move {
         std::uint32_t vertex = 0;
         Lattice3 at{};
         std::array<std::uint32_t, 3> finer{};
-        bool rough = false;  ///< As of a birth.
+        double tolerance = 0;  ///< As of a birth.
     };
     std::vector<Birth> births;
     std::vector<std::uint32_t> taken;  ///< Corners that go over to the births, ascending within each.
@@ -115,6 +116,10 @@ class SplitCodec {
                             SplitPlan& out);
     template <class Coder>
     const char* code_taken(Coder& coder, const SplitPlan& wanted, std::size_t index, SplitPlan& out);
+    /// Encoder: is the rough place near enough to the planes around the one asked for? `ring` is the
+    /// vertex's, `partner` where the child or the parent will be.
+    bool may_be_rough(PlaceGuides& guides, const Lattice3& place, double tolerance, const Ring& ring,
+                      const Lattice3& partner);
     template <class Coder>
     void code_birth_place(Coder& coder, const SplitPlan& wanted, std::size_t index, bool moving,
                           SplitPlan& out);

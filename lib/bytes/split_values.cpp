@@ -3,6 +3,7 @@
 //
 // The second half of SplitCodec: places, moves, new triangles, attributes, and what a split does.
 #include <algorithm>
+#include <cmath>
 
 #include "place_fit.hpp"
 #include "split_codec.hpp"
@@ -34,6 +35,31 @@ void SplitCodec::code_finer(Coder& coder, const std::array<std::uint32_t, 3>& wa
         for (std::size_t i = 0; i < 3; ++i) out[i] = finer_[i].code(coder, wanted[i]);
 }
 
+bool SplitCodec::may_be_rough(PlaceGuides& guides, const Lattice3& place, double tolerance, const Ring& ring,
+                              const Lattice3& partner) {
+    NoCoder look;
+    const Lattice3 near = place_.code(look, guides, place, true);  // changes no model
+    const auto offset = [&](const Lattice3& p) {
+        return std::array<double, 3>{double(p[0]) - place[0], double(p[1]) - place[1],
+                                     double(p[2]) - place[2]};
+    };
+    const auto moved = offset(near);
+    auto before = offset(partner);
+    for (std::uint32_t i = 0; i <= ring.size; ++i) {
+        const auto now = offset(i == ring.size ? partner : live.vertices[ring.vertex[i]].at);
+        const std::array<double, 3> normal = {before[1] * now[2] - before[2] * now[1],
+                                              before[2] * now[0] - before[0] * now[2],
+                                              before[0] * now[1] - before[1] * now[0]};
+        const double length =
+            std::sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
+        const double height = moved[0] * normal[0] + moved[1] * normal[1] + moved[2] * normal[2];
+        if (std::abs(height) > tolerance * length) return false;
+        before = now;
+    }
+    // An edge of the mesh's boundary has no plane that would keep it.
+    return !ring.open;
+}
+
 template <class Coder>
 void SplitCodec::code_birth_place(Coder& coder, const SplitPlan& wanted, std::size_t index, bool moving,
                                   SplitPlan& out) {
@@ -48,7 +74,14 @@ void SplitCodec::code_birth_place(Coder& coder, const SplitPlan& wanted, std::si
     } else {
         if (is_run_) {
             guides_ = place_.guide_birth(live, birth.parent, child_ring_, moving);
-            const bool rough = moving && !shape_.lossless && coder.bit(rough_[0], asked.rough);
+            bool rough = false;
+            if (!Coder::kDecodes && moving && asked.tolerance > 0) {
+                const auto move =
+                    std::find_if(wanted.moves.begin(), wanted.moves.end(),
+                                 [&](const SplitPlan::Move& m) { return m.vertex == birth.parent; });
+                rough = may_be_rough(guides_, asked.at, asked.tolerance, child_ring_, move->at);
+            }
+            if (moving && !shape_.lossless) rough = coder.bit(rough_[0], rough);
             birth.at = place_.code(coder, guides_, asked.at, rough);
             if (!Coder::kDecodes && fit) fit->add(guides_, birth.at);
         } else {
@@ -83,7 +116,9 @@ void SplitCodec::code_move(Coder& coder, const SplitPlan& wanted, std::size_t wh
     } else if (coder.bit(place_moves_[guided], asked.at != now || asked.finer != finer_now)) {
         if (guided) {
             PlaceGuides guides = place_.guide_move(live, vertex, parent_ring_, out.births.back().at);
-            const bool rough = !shape_.lossless && coder.bit(rough_[1], asked.rough);
+            bool rough = !Coder::kDecodes && asked.tolerance > 0 &&
+                         may_be_rough(guides, asked.at, asked.tolerance, parent_ring_, out.births.back().at);
+            if (!shape_.lossless) rough = coder.bit(rough_[1], rough);
             move.at = place_.code(coder, guides, asked.at, rough);
             if (!Coder::kDecodes && fit) fit->add(guides, move.at);
         } else {
@@ -373,8 +408,13 @@ void SplitCodec::apply_run(const SplitPlan& plan) {
         // The sectors on both sides of ring vertex i.
         const bool is_left = star_.closed || i > 0, is_right = star_.closed || i < n;
         const bool right = is_right && taken(i);
-        const Lattice3 none{}, &a = !is_left ? none : before ? goes : stays,
-                              &b = !is_right ? none : right ? goes : stays;
+        const Lattice3 none{},
+            &a = !is_left ? none
+                 : before ? goes
+                          : stays,
+            &b = !is_right ? none
+                 : right   ? goes
+                           : stays;
         for (std::size_t k = 0; k < 3; ++k) {
             here.ring[k] += static_cast<std::uint32_t>(a[k] + b[k]);
             const auto at = static_cast<std::uint32_t>(here.at[k]);
