@@ -86,12 +86,14 @@ const char* SplitCodec::code_mark(Coder& coder, std::uint32_t& primary) {
         return nullptr;
     }
     for (std::uint32_t v; (v = asks_.next()) != kNoVertex;) {
-        // The next in line are most likely the next in memory.
-        if (v + 16 < live.vertex_count()) {
-            live.fetch(v + 16, 0);
-            live.fetch(v + 8, 1);
-            live.fetch(v + 3, 2);
-        }
+        // What the next in line need comes from memory meanwhile: the list of the seventh, the triangles of
+        // the fourth, the ring of the second.
+        std::uint64_t line = asks_.after(v);
+        for (int i = 1; line != 0 && i <= 7; ++i, line &= line - 1)
+            if (i == 2 || i == 4 || i == 7)
+                live.fetch(v + 1 + static_cast<std::uint32_t>(std::countr_zero(line)), i == 2   ? 2
+                                                                                       : i == 4 ? 1
+                                                                                                : 0);
         if (ask(coder, v, v == primary)) {
             primary = v;
             return nullptr;
