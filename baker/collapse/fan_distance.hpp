@@ -23,6 +23,15 @@ struct FanDistance {
         points.clear();
     }
     void find();
+
+    /// In each of four lanes, one of every four triangles. The alignment is what wide registers expect.
+    struct Nearest {
+        alignas(32) Lanes distance2;
+        alignas(32) Lanes index;
+    };
+
+  private:
+    std::vector<Nearest> found_;
 };
 
 }  // namespace vsplit::bake

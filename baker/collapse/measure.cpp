@@ -25,7 +25,9 @@ constexpr double kNear = 0.5;
 constexpr std::size_t kSamples = 16000;
 /// Input vertices times triangles around a collapse: beyond, every other vertex is dropped. Only the last few
 /// collapses have so many.
-constexpr std::size_t kMostPairs = 200'000;
+constexpr std::size_t kMostPairs = 20'000;
+/// Triangles of the input around a collapse: of more, each sample searches its own.
+constexpr std::size_t kMostAround = 200;
 
 Double3 to_double(const Float3& p) {
     return {double(p.x), double(p.y), double(p.z)};
@@ -46,7 +48,6 @@ class Measurer {
           tree_(full_),
           first_(full_.triangles.size(), kNoVertex),
           next_(full_.positions.size(), kNoVertex),
-          guesses_(full_.positions.size(), TriangleTree::kNoGuess),
           forth_(mesh.splits.size(), 0),
           result_(mesh.splits.size(), 0),
           tail_(mesh.positions.size()) {
@@ -68,8 +69,7 @@ class Measurer {
             if (!fan_.empty() && !walk_.acts().empty()) {
                 forth_[rank] =
                     float(std::min(std::sqrt(follow_points()), double(std::numeric_limits<float>::max())));
-                enough_ = kNear * tail_.at(forth_, rank);
-                add_samples(split);
+                add_samples(split, kNear * tail_.at(forth_, rank));
             }
             if (samples_.size() >= kBatch || walk_.splits_left() == 0) {
                 ask();
@@ -84,9 +84,10 @@ class Measurer {
     }
 
   private:
-    struct Sample {
-        Double3 place;
-        std::uint32_t split, vertex, guess;
+    /// The samples of a split, up to where they end.
+    struct Group {
+        std::size_t end;
+        std::uint32_t split;
         float enough, distance;
     };
 
@@ -129,19 +130,16 @@ class Measurer {
         return most;
     }
 
-    void add_samples(std::uint32_t split) {
-        const std::uint32_t centre = walk_.acts().front();
-        const auto add = [&](Double3 at, std::uint32_t vertex) {
-            samples_.push_back({at, split, vertex, guesses_[vertex], float(enough_), 0});
-        };
-        for (const std::uint32_t v : walk_.acts()) add(place(v), v);
+    void add_samples(std::uint32_t split, double enough) {
+        const auto add = [&](Double3 at) { samples_.push_back(at); };
+        for (const std::uint32_t v : walk_.acts()) add(place(v));
         const std::size_t each = kSamples / std::max<std::size_t>(walk_.triangles().size(), 1);
         edges_.clear();
         for (const std::uint32_t t : fan_) {
             const Triangle& c = walk_.triangle(t);
             const Double3 a = place(c[0]), ab = place(c[1]) - a, ac = place(c[2]) - a;
             if (each < 6) {
-                add(a + (ab + ac) * (1.0 / 3), centre);
+                add(a + (ab + ac) * (1.0 / 3));
                 for (std::size_t k = 0; k < 3; ++k) {
                     const auto [low, high] = std::minmax(c[k], c[(k + 1) % 3]);
                     if (acts(low) || acts(high)) edges_.push_back({low, high});
@@ -153,45 +151,76 @@ class Measurer {
                 std::size_t((std::sqrt(8.0 * double(std::min<std::size_t>(each, 153)) + 1) - 3) / 2);
             for (std::size_t j = 0; j <= n; ++j)
                 for (std::size_t k = 0; j + k <= n; ++k)
-                    add(a + ab * (double(j) / double(n)) + ac * (double(k) / double(n)), centre);
+                    add(a + ab * (double(j) / double(n)) + ac * (double(k) / double(n)));
         }
         std::sort(edges_.begin(), edges_.end());
         edges_.erase(std::unique(edges_.begin(), edges_.end()), edges_.end());
-        for (const auto& [u, v] : edges_) add((place(u) + place(v)) * 0.5, centre);
+        for (const auto& [u, v] : edges_) add((place(u) + place(v)) * 0.5);
+        groups_.push_back({samples_.size(), split, float(enough), 0});
     }
     bool acts(std::uint32_t v) const {
         return std::find(walk_.acts().begin(), walk_.acts().end(), v) != walk_.acts().end();
     }
 
     void ask() {
-        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, samples_.size(), 1024),
+        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, groups_.size(), 64),
                           [&](const tbb::blocked_range<std::size_t>& range) {
-                              for (std::size_t i = range.begin(); i < range.end(); ++i) {
-                                  Sample& s = samples_[i];
-                                  const double enough = double(s.enough);
-                                  const auto hit = tree_.closest(s.place, s.guess, enough * enough);
-                                  s.guess = hit.slot;
-                                  s.distance = float(std::min(std::sqrt(hit.distance2),
-                                                              double(std::numeric_limits<float>::max())));
-                              }
+                              thread_local FanDistance near;
+                              thread_local std::vector<std::uint32_t> around;
+                              for (std::size_t i = range.begin(); i < range.end(); ++i)
+                                  groups_[i].distance = float(std::min(
+                                      farthest(i == 0 ? 0 : groups_[i - 1].end, groups_[i], near, around),
+                                      double(std::numeric_limits<float>::max())));
                           });
-        for (const Sample& s : samples_) {
-            guesses_[s.vertex] = s.guess;
-            result_[s.split] = std::max(result_[s.split], s.distance);
-        }
+        for (const Group& group : groups_) result_[group.split] = group.distance;
+        groups_.clear();
         samples_.clear();
+    }
+
+    /// The largest distance from a group's samples to the input, if it is more than enough.
+    double farthest(std::size_t begin, const Group& group, FanDistance& near,
+                    std::vector<std::uint32_t>& around) const {
+        near.clear();
+        near.points.assign(samples_.begin() + std::ptrdiff_t(begin),
+                           samples_.begin() + std::ptrdiff_t(group.end));
+        Double3 low = near.points.front(), high = low;
+        for (const Double3 p : near.points) {
+            low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+            high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+        }
+        // Most have a triangle within reach, and share them.
+        const double enough = double(group.enough);
+        const Double3 reach{enough, enough, enough};
+        around.clear();
+        const bool few = tree_.overlapping(low - reach, high + reach, kMostAround, around);
+        if (few && !around.empty()) {
+            for (const std::uint32_t t : around)
+                for (const std::uint32_t v : full_.triangles[t])
+                    near.corners.push_back(to_double(full_.positions[v]));
+            near.find();
+        } else {
+            near.distance2.assign(near.points.size(), std::numeric_limits<double>::infinity());
+        }
+        double most = enough * enough;
+        std::uint32_t guess = TriangleTree::kNoGuess;
+        for (std::size_t i = 0; i < near.points.size(); ++i)
+            if (near.distance2[i] > most) {
+                const auto hit = tree_.closest(near.points[i], guess, most);
+                guess = hit.slot;
+                most = std::max(most, hit.distance2);
+            }
+        return std::sqrt(most);
     }
 
     Unsplitter walk_;
     Mesh full_;
     TriangleTree tree_;
     std::vector<std::uint32_t> first_, next_;  // chains of input vertices, one a triangle
-    std::vector<std::uint32_t> guesses_;       // per vertex
     std::vector<float> forth_;                 // first collapse first
     std::vector<float> result_;
     Tail tail_;
-    double enough_ = 0;
-    std::vector<Sample> samples_;
+    std::vector<Double3> samples_;
+    std::vector<Group> groups_;
     std::vector<std::uint32_t> fan_, points_;
     std::vector<std::pair<std::uint32_t, std::uint32_t>> edges_;
     FanDistance near_;
