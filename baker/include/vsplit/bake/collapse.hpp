@@ -89,8 +89,8 @@ struct CollapseReport {
         0;  ///< Non-manifold corners, locked, or of infinite weight: never removed.
     std::string
         stopped_by;  ///< Why there is no coarser base: "every edge is guarded or would change the topology".
-    double collapse_cpu_seconds = 0;  ///< The record alone, all threads.
-    double calibrate_cpu_seconds = 0;     ///< What comes after it: measuring, and putting off.
+    double collapse_cpu_seconds = 0;   ///< The record alone, all threads.
+    double calibrate_cpu_seconds = 0;  ///< What comes after it: measuring, and putting off.
 };
 
 struct CollapseResult {
