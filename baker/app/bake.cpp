@@ -35,6 +35,7 @@ struct BakeCommand {
     double show = 0;  ///< Of a progressive GLB, the ratio that viewers see.
     bool meshopt = false, draco = false;
     bool lossless = false;
+    std::string profile = "quality";
 
     int run() const;
     WriteOptions rounding() const {
@@ -156,6 +157,7 @@ int BakeCommand::run() const {
     bake::CollapseOptions options;
     if (const auto reason = collapse.set(options)) return fail_usage(*reason);
     if (const auto reason = marks.fault()) return fail_usage(*reason);
+    if (profile == "stream") options.placement = bake::Placement::kEndpoint;
     if (const int refused = check_output(output)) return refused;
     if (extension_of(output.path) == ".glb") return run_scene(options);
 
@@ -267,6 +269,13 @@ void add_bake(CLI::App& app, int& exit) {
     command->cloud.add_to(*sub);
     command->collapse.add_to(*sub);
     command->marks.add_to(*sub);
+    sub->add_option(
+           "--profile", command->profile,
+           "quality: vertices go where levels are best; stream: each stays where it is born, and the "
+           "file is a third smaller (--placement endpoint)")
+        ->check(CLI::IsMember({"quality", "stream"}))
+        ->capture_default_str()
+        ->excludes("--placement");
     auto* bits = sub->add_option("--position-bits", command->write.position_bits,
                                  "Places are rounded to this many bits of the longest side")
                      ->check(CLI::Range(2, 20))
