@@ -242,7 +242,9 @@ int run(const Options& options) {
                 "material, at most 0.1 each. Normals: the angle between them, degrees.\n"
                 "- Their weights (normals and colours; texture coordinates"
              << (options.all_peers ? "): of four settings the one that does best on the case."
-                                   : ") are those of the library's own demo.")
+                                   : "): 0.5 for normals is what the library's own demo has; `--all-peers` "
+                                     "takes the best of "
+                                     "four settings, case by case, `--moves` lets them move vertices.")
              << "\n- Duck, CesiumMan and 2CylinderEngine are Khronos's samples; spot is Keenan Crane's cow; "
                 "the "
                 "others are made by `scenes.py`.\n\n"
