@@ -13,6 +13,7 @@
 #include "command.hpp"
 #include "input.hpp"
 #include "levels.hpp"
+#include "mark_flags.hpp"
 #include "model.hpp"
 #include "vsplit/bake/collapse.hpp"
 #include "vsplit/bake/files.hpp"
@@ -29,6 +30,7 @@ struct BakeCommand {
     CloudOptions cloud;
     Output output;
     CollapseFlags collapse;
+    MarkFlags marks;
     WriteOptions write;
     double show = 0;  ///< Of a progressive GLB, the ratio that viewers see.
     bool meshopt = false, draco = false;
@@ -87,6 +89,13 @@ int BakeCommand::run_scene(bake::CollapseOptions options) const {
     *bytes = {};
     ProgressBar bar(common);
     options.part_of = scene->part_of;
+    std::optional<MarkReport> marked;
+    if (marks.any()) {
+        auto report = apply_marks(marks, input.path, scene->mesh, {}, scene->mesh.positions.size(), options,
+                                  bar.callback(), exit);
+        if (!report) return exit;
+        marked = std::move(*report);
+    }
     auto result = bake::collapse(scene->mesh, options, bar.callback());
     if (!result) return fail_input(input.path, result.error());
     auto stream = write_progressive_mesh(result->mesh, rounding());
@@ -104,24 +113,29 @@ int BakeCommand::run_scene(bake::CollapseOptions options) const {
     if (const int failed = write_output(output, *glb)) return failed;
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     const double error = shown.error * scene->unit;
-    if (common.json && !common.quiet)
-        print_json({{"input", input.path},
-                    {"output", output.path},
-                    {"read", to_json(scene->report)},
-                    {"ratio_1_triangles", triangles},
-                    {"meshes", scene->parts.size()},
-                    {"primitives", scene->primitives.size()},
-                    {"attributes", scene->mesh.attributes.size()},
-                    {"splits", splits},
-                    {"shown", {{"triangles", shown.mesh.triangles.size()}, {"error", error}}},
-                    {"stream_bytes", stream->size()},
-                    {"bytes", glb->size()},
-                    {"seconds", seconds},
-                    {"notes", scene->notes}});
+    if (common.json && !common.quiet) {
+        Json json = {{"input", input.path},
+                     {"output", output.path},
+                     {"read", to_json(scene->report)},
+                     {"ratio_1_triangles", triangles},
+                     {"meshes", scene->parts.size()},
+                     {"primitives", scene->primitives.size()},
+                     {"attributes", scene->mesh.attributes.size()},
+                     {"splits", splits},
+                     {"shown", {{"triangles", shown.mesh.triangles.size()}, {"error", error}}},
+                     {"stream_bytes", stream->size()},
+                     {"bytes", glb->size()},
+                     {"seconds", seconds},
+                     {"notes", scene->notes}};
+        if (marked) json["marks"] = marked->json();
+        print_json(json);
+    }
     say(common, fmt::format("{}: {} triangles in {} meshes, {} primitives, {} attributes ({})", input.path,
                             with_commas(triangles), scene->parts.size(), scene->primitives.size(),
                             scene->mesh.attributes.size(), scene->report.format));
     for (const std::string& line : describe(scene->report)) say(common, "  " + line);
+    if (marked)
+        for (const std::string& line : marked->describe()) say(common, "  " + line);
     if (const std::uint64_t dropped = result->report.degenerate_triangles)
         say(common,
             fmt::format("  {} triangles with two corners at one point, left out", with_commas(dropped)));
@@ -143,6 +157,7 @@ int BakeCommand::run() const {
     bake::CollapseOptions options;
     if (const auto reason = collapse.set(options)) return fail_usage(*reason);
     if (profile == "stream") options.placement = bake::Placement::kEndpoint;
+    if (const auto reason = marks.fault()) return fail_usage(*reason);
     if (const int refused = check_output(output)) return refused;
     if (extension_of(output.path) == ".glb") return run_scene(options);
 
@@ -152,6 +167,13 @@ int BakeCommand::run() const {
     auto file = load(bar.callback(), surface, exit);
     if (!file) return exit;
     const bake::MeshSurvey survey = bake::survey_mesh(file->mesh);
+    std::optional<MarkReport> marked;
+    if (marks.any()) {
+        auto report = apply_marks(marks, input.path, file->mesh, file->vertex_of, file->report.vertices_in,
+                                  options, bar.callback(), exit);
+        if (!report) return exit;
+        marked = std::move(*report);
+    }
     auto result = bake::collapse(file->mesh, options, bar.callback());
     if (!result) return fail_input(input.path, result.error());
     const std::size_t triangles = file->mesh.triangles.size();
@@ -187,6 +209,7 @@ int BakeCommand::run() const {
                      {"calibrate_cpu_seconds", result->report.calibrate_cpu_seconds},
                      {"peak_memory_bytes", std::uint64_t(usage.ru_maxrss) * 1024}};
         if (surface) json["points"] = surface->report;
+        if (marked) json["marks"] = marked->json();
         if (!common.quiet) print_json(json);
         return kDone;
     }
@@ -200,6 +223,8 @@ int BakeCommand::run() const {
             with_commas(survey.non_manifold_edges), file->report.format));
     for (const std::string& line : describe(file->report)) say(common, "  " + line);
     if (moved) say(common, "  " + *moved);
+    if (marked)
+        for (const std::string& line : marked->describe()) say(common, "  " + line);
     if (survey.duplicate_triangles)
         say(common, fmt::format("  {} duplicate triangles, kept", with_commas(survey.duplicate_triangles)));
     if (survey.zero_area_triangles)
@@ -227,6 +252,7 @@ void add_bake(CLI::App& app, int& exit) {
         "  vsplit bake bunny.obj -o bunny.pmesh\n"
         "  vsplit bake hero.glb --weights COLOR_0.r -o hero.pmesh     painted red = keep\n"
         "  vsplit bake scan.ply --weights scan-weights.txt --cost paper -o scan.pmesh\n"
+        "  vsplit bake hero.ply --marks hero.marks --keep face=95%@40% -o hero.pmesh\n"
         "  vsplit bake scan.xyz -o scan.pmesh                         points: reconstructed first\n"
         "  vsplit bake hero.glb -o hero.vsplit.glb                    the scene too, as a progressive GLB\n"
         "Reads OBJ, PLY, OFF, STL, glTF and GLB; point clouds as .xyz .txt .pts .asc .csv .ply .pcd.");
@@ -243,6 +269,7 @@ void add_bake(CLI::App& app, int& exit) {
         ->check(CLI::IsMember({"quality", "stream"}))
         ->capture_default_str()
         ->excludes("--placement");
+    command->marks.add_to(*sub);
     auto* bits = sub->add_option("--position-bits", command->write.position_bits,
                                  "Places are rounded to this many bits of the longest side")
                      ->check(CLI::Range(2, 20))

@@ -97,5 +97,8 @@ void add_extract(CLI::App& app, int& exit);
 void add_lods(CLI::App& app, int& exit);
 void add_verify(CLI::App& app, int& exit);
 void add_sample(CLI::App& app, int& exit);
+void add_serve(CLI::App& app, int& exit);
+void add_studio(CLI::App& app, int& exit);  // viewer/desktop/app
+void add_render(CLI::App& app, int& exit);  // only with VSPLIT_VIEWER
 
 }  // namespace vsplit::app

@@ -90,6 +90,7 @@ void annotate_file(std::span<const std::byte> bytes, const FileInfo& info) {
     a.u32("bytes of the details");
     a.u64("offset of the table");
     a.checksum("the details");
+    for (const char* what : {"origin x", "origin y", "origin z"}) a.f64(what);
     a.checksum("the header");
     a.part(126, "weights of prediction");
     a.u16("attributes");
@@ -145,6 +146,7 @@ Json to_json(const FileInfo& info) {
             {"lossless", info.lossless},
             {"position_bits", info.position_bits},
             {"position_step", info.position_step},
+            {"origin", info.origin},
             {"attributes", attributes},
             {"bounds", {{"min", point(info.bounds_min)}, {"max", point(info.bounds_max)}}},
             {"base",
@@ -193,6 +195,9 @@ int InfoCommand::run() const {
             fmt::format("  attribute {}: {} components{}", a.name, a.components, a.exact ? ", exact" : ""));
     say(common, fmt::format("  bounds ({}, {}, {}) to ({}, {}, {})", info->bounds_min.x, info->bounds_min.y,
                             info->bounds_min.z, info->bounds_max.x, info->bounds_max.y, info->bounds_max.z));
+    if (info->origin != std::array<double, 3>{})
+        say(common, fmt::format("  origin ({}, {}, {}): add it for the source's coordinates", info->origin[0],
+                                info->origin[1], info->origin[2]));
     say(common, fmt::format("  {:>5}  {:>11} {:>9}  {:>11} {:>11}  {:>9}", "block", "offset", "bytes",
                             "vertices", "triangles", "error after"));
     say(common,

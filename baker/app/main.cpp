@@ -30,6 +30,11 @@ int main(int argc, char** argv) {
     add_info(app, exit);
     add_verify(app, exit);
     add_sample(app, exit);
+    add_serve(app, exit);
+    add_studio(app, exit);
+#ifdef VSPLIT_VIEWER
+    add_render(app, exit);
+#endif
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

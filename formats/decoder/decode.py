@@ -287,14 +287,14 @@ class File:
          self.base_triangles, self.splits, self.corners, self.moves) = struct.unpack_from('<IIQ8I', data, 8)
         if self.version != 1:
             raise Bad('not version 1')
-        if xxh64(data[:176]) != struct.unpack_from('<Q', data, 176)[0]:
+        if xxh64(data[:200]) != struct.unpack_from('<Q', data, 200)[0]:
             raise Bad("the header's checksum")
         self.weighted, self.lossless = flags & 1, flags >> 1 & 1
         base_offset, base_bytes, self.base_error, base_sum, table_sum = struct.unpack_from('<QIfQQ', data, 80)
         self.origin = struct.unpack_from('<3d', data, 112)
         self.step, self.position_bits, draco_bytes, self.largest_group, details_bytes, table_offset, details_sum = \
             struct.unpack_from('<d4IQQ', data, 136)
-        details = data[184:184 + details_bytes]
+        details = data[208:208 + details_bytes]
         base = data[base_offset:base_offset + base_bytes]
         table = data[table_offset:table_offset + 44 * blocks]
         for part, checksum in ((details, details_sum), (base, base_sum), (table, table_sum)):

@@ -47,6 +47,7 @@ struct BlockDecoder::State {
 };
 
 const char* BlockDecoder::State::begin_base(BaseMesh base, std::span<const std::byte> extras) {
+    mesh.origin = info.origin;
     output.reserve(info.vertices, info.triangles, info.splits, info.corner_changes, info.moves);
     codec.live.reserve(info.vertices, info.triangles);
     codec.values.reserve(codec.shape().stride() * info.vertices);

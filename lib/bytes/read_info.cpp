@@ -99,6 +99,9 @@ const char* header_fault(const FileInfo& info, std::uint64_t block_count, std::u
     for (const double value : info.lattice_origin)
         if (!std::isfinite(value)) return "the lattice is not finite";
     if (!std::isfinite(info.lattice_step) || !(info.lattice_step >= 0)) return "the lattice is not finite";
+    offset = 176;
+    for (const double value : info.origin)
+        if (!std::isfinite(value)) return "the origin is not finite";
     offset = 144;
     if (info.lossless ? info.position_bits != 0
                       : info.position_bits < 2 || info.position_bits > kMostPositionBits)
@@ -155,6 +158,7 @@ Result<FileInfo> read_info(std::span<const std::byte> bytes, const Limits& limit
     info.details_offset = kHeaderBytes;
     info.details_bytes = get<std::uint32_t>(bytes, 156);
     info.table_offset = get<std::uint64_t>(bytes, 160);
+    info.origin = get<std::array<double, 3>>(bytes, 176);
     std::uint64_t offset = 0;
     if (const char* fault = header_fault(info, block_count, offset))
         return at(offset, ErrorCode::kMalformed, fault);

@@ -54,6 +54,7 @@ Result<Encoded> encode(const ProgressiveMesh& mesh, const WriteOptions& options)
     for (const Attribute& attribute : mesh.attributes)
         if (attribute.name.size() > 0xFFFF) return cannot("an attribute's name is longer than 65535 bytes");
     Encoded out;
+    out.canonical.origin = mesh.origin;
     {
         LiveMesh full(mesh);
         full.go_to(full.max_level());
@@ -200,6 +201,7 @@ Result<std::vector<std::byte>> write_progressive_mesh(const ProgressiveMesh& mes
     file.put(static_cast<std::uint32_t>(details.size()));
     file.put(table_offset);
     file.put(checksum64(details));
+    file.put(written.origin);
     file.put(checksum64(file.bytes()));
     auto& bytes = file.bytes();
     bytes.reserve(offset);

@@ -33,6 +33,29 @@ class Points(CommandTest):
         self.vsplit('bake', 'whale.xyz', '--weights', 'COLOR_0.r', '-o', 'no.pmesh', code=USAGE)
         self.assertFalse(self.path('no.pmesh').exists())
 
+    def test_map_coordinates_keep_their_digits(self):
+        """Metres in the millions, where floats are half a metre apart: the surface is the one near 0, moved."""
+        name = self.whale()
+        rows = [[float(c) for c in line.split()] for line in self.path(name).read_text().splitlines()]
+        east, north = 500000, 4500000
+        self.write('map.xyz', ''.join(f'{x + east:.9f} {y + north:.9f} {z:.9f}\n' for x, y, z in rows).encode())
+        self.write('near.xyz', ''.join(f'{x:.9f} {y:.9f} {z:.9f}\n' for x, y, z in rows).encode())
+        for stem in ('map', 'near'):
+            self.vsplit('bake', f'{stem}.xyz', '-o', f'{stem}.pmesh')
+            self.vsplit('extract', f'{stem}.pmesh', '--ratio', 1, '-o', f'{stem}.obj')
+            self.vsplit('reconstruct', f'{stem}.xyz', '-o', f'{stem}.ply')
+        self.assertEqual(self.json('info', 'near.pmesh')['origin'], [0, 0, 0])
+        origin = self.json('info', 'map.pmesh')['origin']
+        self.assertTrue(abs(origin[0] - east) < 10 and abs(origin[1] - north) < 10, origin)
+        far, near = ([[float(c) for c in line.split()[1:]] for line in self.path(f'{stem}.obj').read_text().splitlines()
+                      if line.startswith('v ')] for stem in ('map', 'near'))
+        self.assertLess(abs(len(far) - len(near)), 0.02 * len(near))
+        for axis, offset in enumerate((east, north, 0)):
+            for pick in (min, max):
+                a, b = (pick(p[axis] for p in m) for m in (far, near))
+                self.assertLess(abs(a - offset - b), 1e-3)
+        self.vsplit('verify', 'map.pmesh', '--against', 'map.ply')
+
     def test_same_bytes_for_any_number_of_threads(self):
         self.whale()
         for threads in (1, 2):

@@ -222,6 +222,29 @@ TEST_CASE("The front of a file suffices for its info") {
     }
 }
 
+TEST_CASE("The origin of the coordinates travels in the file") {
+    ProgressiveMesh record = small_record(false);
+    record.origin = {500000, -4500000.125, 1e300};
+    const Bytes bytes = written(record);
+    const auto info = read_info(bytes);
+    REQUIRE(info.ok());
+    CHECK(info->origin == record.origin);
+    const auto read = read_progressive_mesh(bytes);
+    REQUIRE(read.ok());
+    CHECK(read->origin == record.origin);
+    CHECK(cut(*read, 0).origin == record.origin);
+    CHECK(canonical_progressive_mesh(record)->origin == record.origin);
+    Bytes broken = bytes;
+    test::put_at(broken, 176, std::numeric_limits<double>::quiet_NaN());
+    test::reseal(broken);
+    const auto refused = read_info(broken);
+    REQUIRE_FALSE(refused.ok());
+    CHECK(refused.error().code == ErrorCode::kMalformed);
+    CHECK(refused.error().offset == 176);
+    record.origin[1] = std::numeric_limits<double>::infinity();
+    CHECK_FALSE(write_progressive_mesh(record).ok());
+}
+
 TEST_CASE("Errors say what kind they are") {
     const Bytes good = written(small_record(false));
     const auto info = read_info(good);

@@ -53,7 +53,8 @@ struct FileInfo {
     /// was, along an axis.
     double position_step = 0;
     std::array<double, 3> lattice_origin{};
-    double lattice_step = 0;  ///< Also of a lossless file, which goes on from there.
+    std::array<double, 3> origin{};  ///< As ProgressiveMesh::origin.
+    double lattice_step = 0;         ///< Also of a lossless file, which goes on from there.
     std::uint32_t largest_group = 0;
     std::vector<AttributeInfo> attributes;
     std::uint64_t file_bytes = 0;

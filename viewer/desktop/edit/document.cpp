@@ -1,0 +1,290 @@
+// SPDX-FileCopyrightText: 2026 The vsplit authors
+// SPDX-License-Identifier: MIT
+#include "document.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include "vsplit/bake/meshes.hpp"
+
+namespace vsplit::studio {
+namespace {
+
+Double3 at(const Float3& p) {
+    return {double(p.x), double(p.y), double(p.z)};
+}
+
+/// Of several weights, each becomes a region; of more than these, one region with strengths.
+constexpr std::size_t kMaxWeightRegions = 8;
+constexpr std::uint32_t kColours[] = {0xE6550D, 0x3182BD, 0x31A354, 0x756BB1,
+                                      0xE7298A, 0xE6AB02, 0x1B9E77, 0xA6761D};
+
+bake::Marks marks_of_weights(std::span<const float> weights) {
+    bake::Marks marks = bake::no_marks(weights.size());
+    std::vector<float> kinds;
+    for (const float w : weights) {
+        if (w == 1 || std::find(kinds.begin(), kinds.end(), w) != kinds.end()) continue;
+        kinds.push_back(w);
+        if (kinds.size() > kMaxWeightRegions) break;
+    }
+    if (kinds.size() <= kMaxWeightRegions) {
+        for (std::size_t r = 0; r < kinds.size(); ++r)
+            marks.regions.push_back({kinds.size() == 1 ? "painted" : "painted-" + std::to_string(r + 1),
+                                     double(kinds[r]), kColours[r % std::size(kColours)]});
+        for (std::size_t v = 0; v < weights.size(); ++v) {
+            const auto it = std::find(kinds.begin(), kinds.end(), weights[v]);
+            if (it != kinds.end()) marks.region[v] = std::uint8_t(it - kinds.begin() + 1);
+        }
+        return marks;
+    }
+    // Continuous: more than 1 and less than 1 are two regions, by powers of the farthest finite weight.
+    double most = 1, least = 1;
+    for (const float w : weights) {
+        if (std::isfinite(w)) most = std::max(most, double(w));
+        if (w > 0) least = std::min(least, double(w));
+    }
+    marks.regions = {{"painted", most, kColours[0]},
+                     {"light", least, kColours[1]},
+                     {"never", double(INFINITY), kColours[4]}};
+    for (std::size_t v = 0; v < weights.size(); ++v) {
+        const double w = double(weights[v]);
+        if (w == 1) continue;
+        marks.region[v] = std::isinf(w) ? 3 : w > 1 ? 1 : 2;
+        if (std::isinf(w)) continue;
+        const double power = w > 1 ? std::log(w) / std::log(most) : w > 0 ? std::log(w) / std::log(least) : 1;
+        marks.strength[v] = float(std::clamp(power, 0.0, 1.0));
+    }
+    return marks;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Document>> Document::open(Source source, bake::CollapseOptions options,
+                                                 const bake::Progress& progress) {
+    std::unique_ptr<Document> document(new Document);
+    Document& d = *document;
+    d.source_ = std::move(source);
+    d.options_ = std::move(options);
+    d.options_.part_of = d.source_.part_of;
+    d.box_ = box_of(d.source_.mesh.positions);
+    d.painting_ = Painting(d.source_.mesh.positions.size());
+    if (!d.source_.mesh.weights.empty()) {
+        d.painting_.replace(marks_of_weights(d.source_.mesh.weights));
+        d.painting_.mark_saved();
+    }
+    if (d.source_.file_vertices == 0) d.source_.file_vertices = d.source_.mesh.positions.size();
+    d.automatic_ = bake::automatic_weights(bake::edge_errors(d.source_.mesh));
+    std::optional<ProgressiveMesh> record = std::move(d.source_.record);
+    d.source_.record.reset();
+    if (!record) {
+        auto result = bake::collapse(d.source_.mesh, d.options_, progress);
+        if (!result) return result.error();
+        record = std::move(result->mesh);
+    }
+    d.adopt(std::move(*record));
+    d.go_to(d.live_->max_level());
+    return document;
+}
+
+std::size_t Document::level_for_ratio(double ratio) const {
+    const ProgressiveMesh& record = live_->state();
+    return level_for_triangles(record, std::uint64_t(std::llround(ratio * double(record.triangles.size()))));
+}
+
+double Document::ratio() const {
+    return double(live_->triangles().size()) /
+           double(std::max<std::size_t>(live_->state().triangles.size(), 1));
+}
+
+void Document::go_to(std::size_t level) {
+    if (level == live_->level()) return;
+    live_->go_to(level);
+    surface_.reset();
+}
+
+Surface& Document::surface() {
+    if (!surface_)
+        surface_ = std::make_unique<Surface>(live_->positions(), live_->triangles(),
+                                             !source_.mesh.attributes.empty());
+    return *surface_;
+}
+
+void Document::mark_level_vertices(std::span<const std::uint32_t> vertices, std::uint8_t region,
+                                   float strength) {
+    const std::uint32_t alive = vertices_at(live_->state(), live_->level());
+    std::vector<std::uint32_t> stack;
+    for (const std::uint32_t v : vertices) {
+        stack.push_back(v);
+        while (!stack.empty()) {
+            const std::uint32_t w = stack.back();
+            stack.pop_back();
+            if (origins_[w] != kNoVertex) painting_.mark(origins_[w], region, strength);
+            // Children are listed by birth: those already alive have their own place under the brush.
+            for (std::uint32_t i = child_starts_[w + 1]; i-- > child_starts_[w] && children_[i] >= alive;)
+                stack.push_back(children_[i]);
+        }
+    }
+}
+
+void Document::dab(const Hit& hit, const Brush& brush) {
+    const auto paint = [&](const Hit& where) {
+        const std::vector<std::uint32_t> reached =
+            surface().within(where.point, where.triangle, brush.radius);
+        if (brush.strength >= 1 || brush.region == 0) {
+            mark_level_vertices(reached, brush.region, brush.strength);
+            return;
+        }
+        for (const std::uint32_t v : reached) {
+            const double d =
+                bake::length(at(live_->positions()[v]) - where.point) / std::max(brush.radius, 1e-30);
+            const float falloff = d < 1 ? float(1 - d * d) : 0.05f;
+            mark_level_vertices({&v, 1}, brush.region, brush.strength * std::max(falloff, 0.05f));
+        }
+    };
+    paint(hit);
+    std::vector<Double3> points{hit.point};
+    for (int axis = 0; axis < 3; ++axis) {
+        if (!(brush.mirror & (1u << axis))) continue;
+        for (std::size_t i = 0, n = points.size(); i < n; ++i) {
+            points.push_back(mirrored(points[i], box_, axis));
+            if (const auto other =
+                    nearest(live_->positions(), live_->triangles(), points.back(), brush.radius))
+                paint(*other);
+        }
+    }
+}
+
+bool Document::select_component(std::uint32_t level_vertex, std::uint8_t region) {
+    painting_.begin();
+    mark_level_vertices(surface().component(level_vertex), region, 1);
+    return painting_.end();
+}
+
+bool Document::select_sharper_than(double degrees, std::uint8_t region) {
+    painting_.begin();
+    mark_level_vertices(surface().sharper_than(degrees), region, 1);
+    return painting_.end();
+}
+
+bool Document::select_material(std::uint32_t level_triangle, std::uint8_t region) {
+    const std::vector<std::uint32_t>& groups = live_->state().groups;
+    const auto group = [&](std::size_t t) { return groups.empty() ? 0u : groups[t]; };
+    std::vector<std::uint32_t> vertices;
+    // Of the full model: a coarse triangle's corner may have descendants of several materials.
+    for (std::size_t t = 0; t < full_.triangles.size(); ++t)
+        if (group(t) == group(level_triangle))
+            vertices.insert(vertices.end(), full_.triangles[t].begin(), full_.triangles[t].end());
+    painting_.begin();
+    for (const std::uint32_t v : vertices)
+        if (origins_[v] != kNoVertex) painting_.mark(origins_[v], region, 1);
+    return painting_.end();
+}
+
+double Document::weight_of(std::size_t region) const {
+    return painting_.marks().regions[region - 1].weight.value_or(automatic_.factor(options_.cost));
+}
+
+std::vector<float> Document::weights() const {
+    return bake::weights_of(painting_.marks(), automatic_.factor(options_.cost));
+}
+
+Mesh Document::painted() const {
+    Mesh mesh = source_.mesh;
+    mesh.weights = weights();
+    if (std::all_of(mesh.weights.begin(), mesh.weights.end(), [](float w) { return w == 1; }))
+        mesh.weights.clear();
+    return mesh;
+}
+
+void Document::adopt(ProgressiveMesh record) {
+    const double ratio_shown = live_ ? ratio() : 1;
+    surface_.reset();
+    origins_ = bake::record_origins(source_.mesh, record);
+    full_ = cut(record, record.splits.size());
+    const std::size_t n = record.positions.size();
+    child_starts_.assign(n + 1, 0);
+    for (const std::uint32_t parent : record.parents)
+        if (parent != kNoVertex) ++child_starts_[parent];
+    std::uint32_t sum = 0;
+    for (std::uint32_t& start : child_starts_) start = (sum += start);
+    children_.resize(sum);
+    for (std::size_t v = n; v-- > 0;)
+        if (record.parents[v] != kNoVertex) children_[--child_starts_[record.parents[v]]] = std::uint32_t(v);
+    live_ = std::make_unique<LiveMesh>(std::move(record));
+    live_->go_to(level_for_ratio(ratio_shown));
+}
+
+Mesh Document::refined_in_place() const {
+    const std::uint32_t alive = vertices_at(live_->state(), live_->level());
+    const bake::Marks& marks = painting_.marks();
+    std::vector<std::uint32_t> to(full_.positions.size());
+    Mesh mesh;
+    mesh.positions = full_.positions;
+    for (std::uint32_t v = 0; v < to.size(); ++v) {
+        const bool marked = origins_[v] != kNoVertex && marks.region[origins_[v]] != 0;
+        const std::uint32_t parent = live_->state().parents[v];
+        to[v] = v < alive || marked || parent == kNoVertex ? v : to[parent];
+        if (v < alive && !marked) mesh.positions[v] = live_->positions()[v];
+    }
+    // A marked parent stands where it is at the end, so what hangs on it is not torn off.
+    for (std::size_t t = 0; t < full_.triangles.size(); ++t) {
+        const Triangle& corners = full_.triangles[t];
+        const Triangle moved{to[corners[0]], to[corners[1]], to[corners[2]]};
+        if (moved[0] == moved[1] || moved[1] == moved[2] || moved[2] == moved[0]) continue;
+        mesh.triangles.push_back(moved);
+        if (!full_.groups.empty()) mesh.groups.push_back(full_.groups[t]);
+    }
+    return mesh;
+}
+
+std::vector<std::byte> Document::encode_marks() const {
+    return bake::encode_marks(
+        bake::marks_of_file(painting_.marks(), source_.vertex_of, source_.file_vertices));
+}
+
+std::vector<std::byte> Document::encode_weights() const {
+    const bake::Marks marks =
+        bake::marks_of_file(painting_.marks(), source_.vertex_of, source_.file_vertices);
+    return bake::encode_weights(bake::weights_of(marks, automatic_.factor(options_.cost)));
+}
+
+Status Document::load_marks(std::span<const std::byte> bytes) {
+    auto marks = bake::parse_marks(bytes, source_.file_vertices);
+    if (marks) {
+        painting_.replace(bake::marks_of_mesh(*marks, source_.vertex_of, painting_.vertices()));
+        return Ok{};
+    }
+    auto weights = bake::parse_weights(bytes, source_.file_vertices);
+    if (!weights) return marks.error();
+    painting_.replace(
+        bake::marks_of_mesh(marks_of_weights(*weights), source_.vertex_of, painting_.vertices()));
+    return Ok{};
+}
+
+Result<std::vector<std::byte>> Document::encode(const std::string& extension, double ratio,
+                                                const WriteOptions& write) const {
+    const auto level = [&](double share) {
+        LiveMesh copy = *live_;
+        copy.go_to(level_for_ratio(share));
+        return bake::GltfLevel{copy.snapshot(), copy.error()};
+    };
+    if (extension == ".pmesh") {
+        LiveMesh copy = *live_;
+        return write_progressive_mesh(copy.release(), write);
+    }
+    if (extension == ".ply") return bake::encode_ply(level(ratio).mesh);
+    if (extension == ".obj") return bake::encode_obj(level(ratio).mesh);
+    if (extension != ".glb")
+        return Error{ErrorCode::kArgument, "exports are .pmesh, .glb, .ply or .obj, not '" + extension + "'",
+                     Error::kNowhere, 0};
+    const bake::GltfLevel one = level(ratio);
+    if (!source_.scene) return bake::encode_levels({&one, 1});
+    if (ratio < 1) return bake::encode_scene(*source_.scene, {&one, 1});
+    LiveMesh copy = *live_;
+    auto stream = write_progressive_mesh(copy.release(), write);
+    if (!stream) return stream.error();
+    return bake::encode_progressive_scene(*source_.scene, level(0), *stream);
+}
+
+}  // namespace vsplit::studio

@@ -1,0 +1,111 @@
+// SPDX-FileCopyrightText: 2026 The vsplit authors
+// SPDX-License-Identifier: MIT
+//
+// What the studio works on: a model, its collapse sequence at a level, and the paint on it.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "camera.hpp"
+#include "painting.hpp"
+#include "surface.hpp"
+#include "vsplit/bake/collapse.hpp"
+#include "vsplit/bake/scene.hpp"
+#include "vsplit/live_mesh.hpp"
+#include "vsplit/write.hpp"
+
+namespace vsplit::studio {
+
+/// A model as it was opened.
+struct Source {
+    std::string path;
+    Mesh mesh;                              ///< Weights, if any, become region "painted".
+    std::optional<bake::Scene> scene;       ///< Around it; its `mesh` may be empty.
+    std::vector<std::uint32_t> part_of;     ///< As CollapseOptions::part_of.
+    std::vector<std::uint32_t> vertex_of;   ///< As MeshFile::vertex_of.
+    std::size_t file_vertices = 0;          ///< As the file lists them, to which weight files refer.
+    std::optional<ProgressiveMesh> record;  ///< If the file had one; `mesh` is then its full level.
+};
+
+struct Brush {
+    double radius = 0;        ///< Object units.
+    float strength = 1;       ///< 0 to 1, in the middle; it falls off towards the rim if below 1.
+    std::uint8_t region = 1;  ///< 0 erases.
+    unsigned mirror = 0;      ///< Bits: 1 x, 2 y, 4 z; the plane through the box's centre.
+};
+
+class Document {
+  public:
+    /// Takes the model; bakes it first if it has no record. Errors: what collapse() returns.
+    static Result<std::unique_ptr<Document>> open(Source source, bake::CollapseOptions options,
+                                                  const bake::Progress& progress = {});
+
+    const Source& source() const { return source_; }
+    const Box& box() const { return box_; }
+    const bake::CollapseOptions& options() const { return options_; }
+
+    LiveMesh& live() { return *live_; }
+    const LiveMesh& live() const { return *live_; }
+    std::size_t level_for_ratio(double ratio) const;
+    double ratio() const;
+    void go_to(std::size_t level);
+    /// The vertex of the model that a vertex of the record is.
+    std::uint32_t origin(std::uint32_t v) const { return origins_[v]; }
+
+    Painting& painting() { return painting_; }
+    const Painting& painting() const { return painting_; }
+    /// Marks the vertices of the level that the brush reaches around the hit, and all that is split off from
+    /// them. Between painting().begin() and end().
+    void dab(const Hit& hit, const Brush& brush);
+    void mark_level_vertices(std::span<const std::uint32_t> vertices, std::uint8_t region, float strength);
+    /// One stroke each. False if nothing changed.
+    bool select_component(std::uint32_t level_vertex, std::uint8_t region);
+    bool select_sharper_than(double degrees, std::uint8_t region);
+    bool select_material(std::uint32_t level_triangle, std::uint8_t region);
+
+    /// Weights for the model as it is painted.
+    std::vector<float> weights() const;
+    const bake::AutomaticWeights& automatic() const { return automatic_; }
+    /// The region's weight, whether its own or the automatic one.
+    double weight_of(std::size_t region) const;
+    /// The model with those weights: what Apply bakes.
+    Mesh painted() const;
+    /// Goes over to a record of painted(); the ratio shown stays.
+    void adopt(ProgressiveMesh record);
+
+    /// The level with all that is marked at full detail, at once and without a bake: triangles of the full
+    /// model, their corners moved to where their vertices are at this level unless they are marked.
+    Mesh refined_in_place() const;
+
+    /// Marks as a file has them, for the file's own vertices.
+    std::vector<std::byte> encode_marks() const;
+    std::vector<std::byte> encode_weights() const;
+    /// Marks, or plain weights, of the file's vertices.
+    Status load_marks(std::span<const std::byte> bytes);
+
+    /// By extension: .pmesh, or a level as .ply, .obj, .glb; a scene as a whole .glb. `ratio` 1 and .glb of a
+    /// scene: a progressive GLB.
+    Result<std::vector<std::byte>> encode(const std::string& extension, double ratio,
+                                          const WriteOptions& write = {}) const;
+
+  private:
+    Document() = default;
+    Surface& surface();
+
+    Source source_;
+    bake::CollapseOptions options_;
+    Box box_;
+    std::unique_ptr<LiveMesh> live_;
+    std::vector<std::uint32_t> origins_;
+    std::vector<std::uint32_t> child_starts_, children_;  // of the record's vertices
+    Mesh full_;                                           // in the record's numbers
+    Painting painting_;
+    bake::AutomaticWeights automatic_;
+    std::unique_ptr<Surface> surface_;  // of the level, made when first needed
+};
+
+}  // namespace vsplit::studio
