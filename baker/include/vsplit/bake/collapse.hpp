@@ -34,10 +34,10 @@ struct AttributeWeights {
     double texcoord = 0.5;  ///< Times how far the texture slides on the surface.
     double morph = 0.5;     ///< Times how far a morph target's vertex is moved elsewhere.
     // The others times the size of the triangles around, and:
-    double normal = 0.1;   ///< the difference of unit vectors;
+    double normal = 1.0;   ///< the difference of unit vectors;
     double tangent = 0.0;  ///< the same;
     double color = 0.1;    ///< the difference of colours;
-    double joints = 0.3;   ///< the difference of the joints' weights;
+    double joints = 1.0;   ///< the difference of the joints' weights;
     double other = 0.1;    ///< the difference over the attribute's range.
 };
 
