@@ -10,7 +10,7 @@ namespace vsplit::bake {
 namespace {
 
 /// What samples miss between them.
-constexpr double kSafety = 1.5;
+constexpr double kSafety = 1.7;
 /// Distances below this share of the largest coordinate are those of rounding to floats.
 constexpr double kRounding = 0x1p-24;
 

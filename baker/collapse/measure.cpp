@@ -28,6 +28,8 @@ constexpr std::size_t kSamples = 16000;
 constexpr std::size_t kMostPairs = 20'000;
 /// Triangles of the input around a collapse: of more, each sample searches its own.
 constexpr std::size_t kMostAround = 200;
+/// Of a hub's triangles, about so many have samples: it has thousands, and as many collapses.
+constexpr std::size_t kMostFan = 100;
 
 Double3 to_double(const Float3& p) {
     return {double(p.x), double(p.y), double(p.z)};
@@ -135,8 +137,9 @@ class Measurer {
         for (const std::uint32_t v : walk_.acts()) add(place(v));
         const std::size_t each = kSamples / std::max<std::size_t>(walk_.triangles().size(), 1);
         edges_.clear();
-        for (const std::uint32_t t : fan_) {
-            const Triangle& c = walk_.triangle(t);
+        const std::size_t stride = fan_.size() / kMostFan + 1;
+        for (std::size_t i = 0; i < fan_.size(); i += stride) {
+            const Triangle& c = walk_.triangle(fan_[i]);
             const Double3 a = place(c[0]), ab = place(c[1]) - a, ac = place(c[2]) - a;
             if (each < 6) {
                 add(a + (ab + ac) * (1.0 / 3));
