@@ -72,8 +72,8 @@ class WindowTest(unittest.TestCase):
             process.terminate()
             process.wait(20)
 
-    def open(self, *arguments):
-        self.studio = subprocess.Popen([VSPLIT, 'studio', 'whale.ply', '--size', f'{WIDTH}x{HEIGHT}', *arguments], cwd=self.folder,
+    def open(self, file='whale.ply'):
+        self.studio = subprocess.Popen([VSPLIT, 'studio', file, '--size', f'{WIDTH}x{HEIGHT}'], cwd=self.folder,
                                        env=self.environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
         self.addCleanup(self.studio.stdout.close)
         self.addCleanup(self.stop, self.studio)
@@ -231,6 +231,17 @@ class WindowTest(unittest.TestCase):
         self.assertIsNone(self.studio.poll())
         self.key('ctrl+q')
         self.assertEqual(self.studio.wait(20), 0)
+
+    def test_points_become_a_surface_to_paint(self):
+        subprocess.run([VSPLIT, 'sample', 'whale', '--points', '5000', '-o', 'cloud.xyz', '--quiet'], cwd=self.folder, check=True)
+        self.open('cloud.xyz')
+        middle = (PANEL + (WIDTH - PANEL) // 2, HEIGHT // 2)
+        self.drag([(middle[0] - 40 + 10 * i, middle[1]) for i in range(8)], 'ctrl')
+        self.wait(lambda: self.marked('cloud.autosave.marks').get(1, 0) > 5, 'a stroke on what was points')
+        self.keep('9-points')
+        self.key('ctrl+q', 'd')
+        self.assertEqual(self.studio.wait(20), 0)
+        self.assertFalse((self.folder / 'cloud.autosave.marks').exists())
 
     def test_panel_by_mouse(self):
         self.open()
