@@ -195,4 +195,28 @@ TriangleTree::Hit TriangleTree::closest(Double3 point, std::uint32_t guess, doub
     return {best, order_[slot], slot};
 }
 
+bool TriangleTree::overlapping(Double3 low, Double3 high, std::size_t most,
+                               std::vector<std::uint32_t>& out) const {
+    std::uint32_t stack[kStack];
+    int size = 0;
+    stack[size++] = 0;
+    const auto meets = [&](const Node& node) {
+        return double(node.low[0]) <= high.x && double(node.high[0]) >= low.x &&
+               double(node.low[1]) <= high.y && double(node.high[1]) >= low.y &&
+               double(node.low[2]) <= high.z && double(node.high[2]) >= low.z;
+    };
+    while (size) {
+        const Node& node = nodes_[stack[--size]];
+        if (!meets(node)) continue;
+        if (node.count == 0) {
+            stack[size++] = node.first;
+            stack[size++] = node.first + 1;
+            continue;
+        }
+        if (out.size() + node.count > most) return false;
+        out.insert(out.end(), order_.begin() + node.first, order_.begin() + node.first + node.count);
+    }
+    return true;
+}
+
 }  // namespace vsplit::bake

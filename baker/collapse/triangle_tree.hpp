@@ -36,6 +36,10 @@ class TriangleTree {
     Hit closest(Double3 point, std::uint32_t guess = kNoGuess, double enough2 = 0,
                 double bound2 = std::numeric_limits<double>::infinity()) const;
 
+    /// Appends the triangles in the leaves whose boxes meet the box from `low` to `high`; false if they are
+    /// more than `most`, and not all are there.
+    bool overlapping(Double3 low, Double3 high, std::size_t most, std::vector<std::uint32_t>& out) const;
+
   private:
     struct alignas(32) Node {
         std::array<float, 3> low, high;
