@@ -35,19 +35,21 @@ Double3 to_double(const Float3& p) {
     return {double(p.x), double(p.y), double(p.z)};
 }
 
-Mesh full_mesh(const Unsplitter& walk) {
+/// The input, in the order of a tree over it.
+struct Input {
+    explicit Input(const ProgressiveMesh& record) : mesh(Unsplitter::full(record)), tree(mesh) {
+        number = tree.arrange(mesh);
+    }
     Mesh mesh;
-    mesh.positions.assign(walk.positions().begin(), walk.positions().end());
-    mesh.triangles.assign(walk.triangles().begin(), walk.triangles().end());
-    return mesh;
-}
+    TriangleTree tree;
+    std::vector<std::uint32_t> number;  // of each of the record's vertices, until Measurer has used it
+};
 
 class Measurer {
   public:
     explicit Measurer(const ProgressiveMesh& mesh)
-        : walk_(mesh),
-          full_(full_mesh(walk_)),
-          tree_(full_),
+        : input_(mesh),
+          walk_(mesh),
           first_(full_.triangles.size(), kNoVertex),
           next_(full_.positions.size(), kNoVertex),
           forth_(mesh.splits.size(), 0),
@@ -55,11 +57,12 @@ class Measurer {
           tail_(mesh.positions.size()) {
         std::vector<bool> seen(full_.positions.size(), false);
         for (std::uint32_t t = 0; t < full_.triangles.size(); ++t)
-            for (const std::uint32_t v : full_.triangles[t])
-                if (!seen[v]) {
+            for (const std::uint32_t corner : walk_.triangle(t))
+                if (const std::uint32_t v = input_.number[corner]; !seen[v]) {
                     seen[v] = true;
                     put(v, t);
                 }
+        std::vector<std::uint32_t>().swap(input_.number);
     }
 
     std::vector<float> run(const Progress& progress) {
@@ -168,11 +171,11 @@ class Measurer {
     void ask() {
         tbb::parallel_for(tbb::blocked_range<std::size_t>(0, groups_.size(), 64),
                           [&](const tbb::blocked_range<std::size_t>& range) {
-                              thread_local FanDistance near;
+                              thread_local FarPoints far;
                               thread_local std::vector<std::uint32_t> around;
                               for (std::size_t i = range.begin(); i < range.end(); ++i)
                                   groups_[i].distance = float(std::min(
-                                      farthest(i == 0 ? 0 : groups_[i - 1].end, groups_[i], near, around),
+                                      farthest(i == 0 ? 0 : groups_[i - 1].end, groups_[i], far, around),
                                       double(std::numeric_limits<float>::max())));
                           });
         for (const Group& group : groups_) result_[group.split] = group.distance;
@@ -181,13 +184,12 @@ class Measurer {
     }
 
     /// The largest distance from a group's samples to the input, if it is more than enough.
-    double farthest(std::size_t begin, const Group& group, FanDistance& near,
+    double farthest(std::size_t begin, const Group& group, FarPoints& far,
                     std::vector<std::uint32_t>& around) const {
-        near.clear();
-        near.points.assign(samples_.begin() + std::ptrdiff_t(begin),
-                           samples_.begin() + std::ptrdiff_t(group.end));
-        Double3 low = near.points.front(), high = low;
-        for (const Double3 p : near.points) {
+        far.points.assign(samples_.begin() + std::ptrdiff_t(begin),
+                          samples_.begin() + std::ptrdiff_t(group.end));
+        Double3 low = far.points.front(), high = low;
+        for (const Double3 p : far.points) {
             low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
             high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
         }
@@ -195,29 +197,22 @@ class Measurer {
         const double enough = double(group.enough);
         const Double3 reach{enough, enough, enough};
         around.clear();
-        const bool few = tree_.overlapping(low - reach, high + reach, kMostAround, around);
-        if (few && !around.empty()) {
-            for (const std::uint32_t t : around)
-                for (const std::uint32_t v : full_.triangles[t])
-                    near.corners.push_back(to_double(full_.positions[v]));
-            near.find();
-        } else {
-            near.distance2.assign(near.points.size(), std::numeric_limits<double>::infinity());
-        }
         double most = enough * enough;
+        if (!input_.tree.overlapping(low - reach, high + reach, kMostAround, around)) around.clear();
+        far.drop_near(full_, around, most);
         std::uint32_t guess = TriangleTree::kNoGuess;
-        for (std::size_t i = 0; i < near.points.size(); ++i)
-            if (near.distance2[i] > most) {
-                const auto hit = tree_.closest(near.points[i], guess, most);
+        for (std::size_t i = 0; i < far.points.size(); ++i)
+            if (far.distance2[i] > most) {
+                const auto hit = input_.tree.closest(far.points[i], guess, most, far.distance2[i]);
                 guess = hit.slot;
                 most = std::max(most, hit.distance2);
             }
         return std::sqrt(most);
     }
 
+    Input input_;
+    const Mesh& full_ = input_.mesh;
     Unsplitter walk_;
-    Mesh full_;
-    TriangleTree tree_;
     std::vector<std::uint32_t> first_, next_;  // chains of input vertices, one a triangle
     std::vector<float> forth_;                 // first collapse first
     std::vector<float> result_;

@@ -18,6 +18,9 @@ class Unsplitter {
   public:
     explicit Unsplitter(const ProgressiveMesh& mesh);
 
+    /// The full mesh.
+    static Mesh full(const ProgressiveMesh& mesh);
+
     /// Undoes the last split; there must be one. Returns its number.
     std::uint32_t step();
     std::uint32_t splits_left() const { return left_; }
