@@ -10,6 +10,7 @@
 #include <limits>
 
 #include "fan_distance.hpp"
+#include "star_mesh.hpp"
 #include "tail.hpp"
 #include "triangle_tree.hpp"
 #include "unsplit.hpp"
@@ -17,8 +18,10 @@
 namespace vsplit::bake {
 namespace {
 
-/// Samples that are asked at once.
+/// Samples that are asked at once, at least, and per triangle of the input: the more, the closer together are
+/// those that follow each other.
 constexpr std::size_t kBatch = 1 << 15;
+constexpr double kBatchShare = 0.25;
 /// Samples below this share of the tail are near enough.
 constexpr double kNear = 0.5;
 /// On a level's triangles together, about, where it has so few that their middles are not enough.
@@ -67,8 +70,10 @@ class Measurer {
 
     std::vector<float> run(const Progress& progress) {
         const std::size_t count = result_.size();
+        const std::size_t batch = std::max(kBatch, std::size_t(kBatchShare * double(full_.triangles.size())));
         while (walk_.splits_left() != 0) {
             const std::uint32_t split = walk_.step();
+            walk_.look_ahead([&](std::uint32_t t) { fetch_ahead(&first_[t]); });
             const std::size_t rank = count - 1 - split;
             gather();
             if (!fan_.empty() && !walk_.acts().empty()) {
@@ -76,7 +81,7 @@ class Measurer {
                     float(std::min(std::sqrt(follow_points()), double(std::numeric_limits<float>::max())));
                 add_samples(split, kNear * tail_.at(forth_, rank));
             }
-            if (samples_.size() >= kBatch || walk_.splits_left() == 0) {
+            if (samples_.size() >= batch || walk_.splits_left() == 0) {
                 ask();
                 if (progress && !progress("measure errors", double(rank + 1) / double(count))) return {};
             }
@@ -89,10 +94,10 @@ class Measurer {
     }
 
   private:
-    /// The samples of a split, up to where they end.
+    /// The samples of a split.
     struct Group {
-        std::size_t end;
-        std::uint32_t split;
+        std::uint32_t begin, end;
+        std::uint32_t split, place;  // place: of those of similar numbers the samples are close together
         float enough, distance;
     };
 
@@ -136,6 +141,7 @@ class Measurer {
     }
 
     void add_samples(std::uint32_t split, double enough) {
+        const auto begin = std::uint32_t(samples_.size());
         const auto add = [&](Double3 at) { samples_.push_back(at); };
         for (const std::uint32_t v : walk_.acts()) add(place(v));
         const std::size_t each = kSamples / std::max<std::size_t>(walk_.triangles().size(), 1);
@@ -162,21 +168,25 @@ class Measurer {
         std::sort(edges_.begin(), edges_.end());
         edges_.erase(std::unique(edges_.begin(), edges_.end()), edges_.end());
         for (const auto& [u, v] : edges_) add((place(u) + place(v)) * 0.5);
-        groups_.push_back({samples_.size(), split, float(enough), 0});
+        groups_.push_back({begin, std::uint32_t(samples_.size()), split,
+                           points_.empty() ? 0 : points_.front(), float(enough), 0});
     }
     bool acts(std::uint32_t v) const {
         return std::find(walk_.acts().begin(), walk_.acts().end(), v) != walk_.acts().end();
     }
 
     void ask() {
+        std::sort(groups_.begin(), groups_.end(), [](const Group& a, const Group& b) {
+            return a.place != b.place ? a.place < b.place : a.split < b.split;
+        });
         tbb::parallel_for(tbb::blocked_range<std::size_t>(0, groups_.size(), 64),
                           [&](const tbb::blocked_range<std::size_t>& range) {
                               thread_local FarPoints far;
                               thread_local std::vector<std::uint32_t> around;
                               for (std::size_t i = range.begin(); i < range.end(); ++i)
-                                  groups_[i].distance = float(std::min(
-                                      farthest(i == 0 ? 0 : groups_[i - 1].end, groups_[i], far, around),
-                                      double(std::numeric_limits<float>::max())));
+                                  groups_[i].distance =
+                                      float(std::min(farthest(groups_[i], far, around),
+                                                     double(std::numeric_limits<float>::max())));
                           });
         for (const Group& group : groups_) result_[group.split] = group.distance;
         groups_.clear();
@@ -184,9 +194,8 @@ class Measurer {
     }
 
     /// The largest distance from a group's samples to the input, if it is more than enough.
-    double farthest(std::size_t begin, const Group& group, FarPoints& far,
-                    std::vector<std::uint32_t>& around) const {
-        far.points.assign(samples_.begin() + std::ptrdiff_t(begin),
+    double farthest(const Group& group, FarPoints& far, std::vector<std::uint32_t>& around) const {
+        far.points.assign(samples_.begin() + std::ptrdiff_t(group.begin),
                           samples_.begin() + std::ptrdiff_t(group.end));
         Double3 low = far.points.front(), high = low;
         for (const Double3 p : far.points) {
