@@ -92,27 +92,31 @@ bool right(LiveBuffers& live, std::span<const std::byte> file) {
     return true;
 }
 
-Result<Figures> measure(const Mesh& mesh, const Kind& kind) {
+Result<std::vector<std::byte>> bake_file(const Mesh& mesh, const Kind& kind) {
     bake::CollapseOptions options;
     options.placement = kind.placement;
     options.calibrate = false;  // errors are of no concern here
     const auto record = bake::collapse(mesh, options);
     if (!record) return record.error();
-    const auto file = write_progressive_mesh(record->mesh);
-    if (!file) return file.error();
+    return write_progressive_mesh(record->mesh);
+}
 
+Result<Figures> measure(std::span<const std::byte> file) {
     Figures f;
     LiveBuffers live;
     std::vector<double> decode;
+    const auto info = read_info(file);
+    if (!info) return info.error();
+    const double corners = info->corner_changes;
     for (int run = 0; run < 3; ++run) {
-        const auto seconds = feed(*file, live);
+        const auto seconds = feed(file, live);
         if (!seconds) return seconds.error();
         decode.push_back(*seconds);
     }
-    if (!right(live, *file)) return Error{ErrorCode::kMalformed, "LiveBuffers and LiveMesh differ"};
+    if (!right(live, file)) return Error{ErrorCode::kMalformed, "LiveBuffers and LiveMesh differ"};
     const std::size_t splits = live.available();
     f.splits = splits;
-    f.corners = double(record->mesh.corner_changes.size()) / double(splits);
+    f.corners = corners / double(splits);
 
     std::vector<double> refine, coarsen;
     std::uint64_t seen = 0;
@@ -150,23 +154,40 @@ Result<Figures> measure(const Mesh& mesh, const Kind& kind) {
 
 int main(int argc, char** argv) {
     std::vector<std::string> files;
-    std::string markdown;
+    std::string markdown, keep;
     CLI::App app("Speed and memory of the live buffers, on one thread.", "vsplit_bench_live");
-    app.add_option("file", files, "Meshes (default: nefertiti and igea-1m of the corpus)");
+    app.add_option("file", files,
+                   "Meshes, or .pmesh files as they are (default: nefertiti and igea-1m of the corpus)");
     app.add_option("--markdown", markdown, "Write the page to this file too");
+    app.add_option("--keep", keep, "Folder for what was baked, to measure it again without baking");
     CLI11_PARSE(app, argc, argv);
     const std::string corpus = VSPLIT_CORPUS;
     if (files.empty()) files = {corpus + "/meshes/nefertiti.obj", corpus + "/meshes/igea-1m.ply"};
 
     std::string rows, command = "vsplit_bench_live";
     bool failed = false;
+    const auto report = [&](const std::string& name, const std::string& kind, const Result<Figures>& f) {
+        if (!f) {
+            fmt::print(stderr, "{}, {}: {}\n", name, kind, f.error().describe());
+            failed = true;
+            return;
+        }
+        rows += fmt::format(
+            "| {} | {} | {} | {} | {:.2f} | {:.0f} | {:.0f} | {:.2f} | {:.2f} | {:.2f} | {:.2f} |\n", name,
+            kind, f->triangles, f->splits, f->corners, f->refine, f->coarsen, f->jump_mean, f->jump_worst,
+            f->memory, f->decode);
+    };
     for (const std::string& path : files) {
         const std::string name = path.substr(path.rfind('/') + 1);
+        const std::string extension = name.substr(std::min(name.rfind('.'), name.size()));
         command += " " + name;
         const auto bytes = bake::read_file(path);
-        const auto input = bytes
-                               ? bake::parse_mesh(*bytes, name.substr(std::min(name.rfind('.'), name.size())))
-                               : Result<bake::MeshFile>(bytes.error());
+        if (bytes && extension == ".pmesh") {
+            report(name, "as baked", measure(*bytes));
+            continue;
+        }
+        const auto input =
+            bytes ? bake::parse_mesh(*bytes, extension) : Result<bake::MeshFile>(bytes.error());
         if (!input) {
             fmt::print(stderr, "{}: {}\n", path, input.error().describe());
             return 3;
@@ -179,17 +200,12 @@ int main(int argc, char** argv) {
                     normals.values.insert(normals.values.end(), {n.x, n.y, n.z});
                 mesh.attributes = {std::move(normals)};
             }
-            const auto f = measure(mesh, kind);
-            if (!f) {
-                fmt::print(stderr, "{}, {}: {}\n", name, kind.name, f.error().describe());
-                failed = true;
-                continue;
-            }
-            rows += fmt::format(
-                "| {} | {} | {} | {} | {:.2f} | {:.0f} | {:.0f} | {:.2f} | {:.2f} | {:.2f} | {:.2f} |\n",
-                name, kind.name, f->triangles, f->splits, f->corners, f->refine, f->coarsen, f->jump_mean,
-                f->jump_worst, f->memory, f->decode);
-            fmt::print(stderr, "{}, {}: done\n", name, kind.name);
+            const auto file = bake_file(mesh, kind);
+            report(name, kind.name, file ? measure(*file) : Result<Figures>(file.error()));
+            if (!file || keep.empty()) continue;
+            const std::string kept = keep + "/" + name + "." + kind.name + ".pmesh";
+            const Status written = bake::write_file(kept, *file, true);
+            if (!written) fmt::print(stderr, "{}: {}\n", kept, written.error().describe());
         }
     }
     const bench::Machine machine = bench::describe_machine();
