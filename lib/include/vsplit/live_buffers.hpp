@@ -79,6 +79,9 @@ class LiveBuffers {
     /// As ProgressiveMesh::parents, of the vertices alive.
     std::span<const std::uint32_t> parents() const { return std::span(parents_).first(now_.vertices); }
 
+    /// The same of all vertices of the levels known, alive or not.
+    std::span<const std::uint32_t> all_parents() const { return std::span(parents_).first(known_.vertices); }
+
     DirtyRanges take_dirty();
 
     /// Bytes allocated.
