@@ -37,6 +37,13 @@ class Pages {
     std::vector<std::uint8_t> pages_;
 };
 
+/// An active vertex with what a camera must know of it, side by side: a frame reads them in a row.
+struct Front {
+    std::uint32_t vertex = 0;
+    std::uint32_t following = kNoSplit, current = kNoSplit;  ///< In its chain of splits: to do, and done.
+    ViewNode after, done;                                    ///< Of these two.
+};
+
 template <class T>
 std::size_t bytes_of(const std::vector<T>& v) {
     return v.capacity() * sizeof(T);
@@ -47,12 +54,12 @@ std::size_t bytes_of(const std::vector<T>& v) {
 struct ViewMesh::State {
     ProgressiveMesh mesh;
     ViewPlan plan;
-    std::vector<std::uint8_t> applied;              ///< Of each split.
-    std::vector<std::uint32_t> users;               ///< Of each split: applied ones that need it.
-    std::vector<std::uint32_t> following, current;  ///< Of each vertex: in its chain of splits.
+    std::vector<std::uint8_t> applied;  ///< Of each split.
+    std::vector<std::uint32_t> users;   ///< Of each split: applied ones that need it.
     std::vector<Triangle> drawn;
-    std::vector<std::uint32_t> number, slot;   ///< Of a drawn triangle its number, and back.
-    std::vector<std::uint32_t> active, place;  ///< Vertices, and where each is among them.
+    std::vector<std::uint32_t> number, slot;  ///< Of a drawn triangle its number, and back.
+    std::vector<Front> active;
+    std::vector<std::uint32_t> place;  ///< Of an active vertex: where it is among them.
     std::vector<std::uint32_t> stack;
     std::size_t applied_count = 0, cursor = 0, returning_cursor = 0;
     Pages dirty_triangles, dirty_vertices;
@@ -66,14 +73,15 @@ struct ViewMesh::State {
     void apply(std::uint32_t k);
     void undo(std::uint32_t k);
     std::size_t force(std::uint32_t k, std::size_t most);
-    float pixels(const View& view, std::uint32_t k) const;
-    bool undoable(const View& view, std::uint32_t k) const {
-        return k != kNoSplit && applied[k] && users[k] == 0 &&
-               !(pixels(view, k) > std::max(view.pixels, 0.0f) * view.hysteresis);
+    void add_vertex(std::uint32_t v);
+    void turn(std::uint32_t anchor, std::uint32_t following, std::uint32_t current);
+    bool wanted(const View& view, const ViewNode& node) const {
+        return pixels(view, node) > std::max(view.pixels, 0.0f);
     }
-    bool wanted(const View& view, std::uint32_t k) const {
-        return pixels(view, k) > std::max(view.pixels, 0.0f);
+    bool unwanted(const View& view, const ViewNode& node) const {
+        return !(pixels(view, node) > std::max(view.pixels, 0.0f) * view.hysteresis);
     }
+    static float pixels(const View& view, const ViewNode& node);
 };
 
 void ViewMesh::State::add_triangle(std::uint32_t t) {
@@ -93,13 +101,25 @@ void ViewMesh::State::remove_triangle(std::uint32_t t) {
     number.pop_back();
 }
 
+void ViewMesh::State::add_vertex(std::uint32_t v) {
+    place[v] = std::uint32_t(active.size());
+    active.push_back({v, kNoSplit, kNoSplit, {}, {}});
+    turn(v, plan.first[v], kNoSplit);
+}
+
+/// Moves a vertex along its chain.
+void ViewMesh::State::turn(std::uint32_t anchor, std::uint32_t following, std::uint32_t current) {
+    Front& front = active[place[anchor]];
+    front.following = following;
+    front.current = current;
+    if (following != kNoSplit) front.after = plan.nodes[following];
+    if (current != kNoSplit) front.done = plan.nodes[current];
+}
+
 void ViewMesh::State::begin() {
     const std::size_t vertices = mesh.positions.size(), triangles = mesh.triangles.size();
     applied.assign(mesh.splits.size(), 0);
     users.assign(mesh.splits.size(), 0);
-    following = plan.first;
-    plan.first = {};
-    current.assign(vertices, kNoSplit);
     drawn.reserve(triangles);
     number.reserve(triangles);
     slot.resize(triangles);
@@ -109,10 +129,7 @@ void ViewMesh::State::begin() {
     dirty_triangles.resize(triangles);
     dirty_vertices.resize(vertices);
     for (std::uint32_t t = 0; t < mesh.base_triangles; ++t) add_triangle(t);
-    for (std::uint32_t v = 0; v < mesh.base_vertices; ++v) {
-        place[v] = v;
-        active.push_back(v);
-    }
+    for (std::uint32_t v = 0; v < mesh.base_vertices; ++v) add_vertex(v);
 }
 
 void ViewMesh::State::apply(std::uint32_t k) {
@@ -129,14 +146,8 @@ void ViewMesh::State::apply(std::uint32_t k) {
         exchange_move(mesh, i);
         dirty_vertices.mark(mesh.moves[i].vertex);
     }
-    for (std::uint32_t v = from.vertices_end; v < to.vertices_end; ++v) {
-        place[v] = std::uint32_t(active.size());
-        active.push_back(v);
-    }
-    if (const std::uint32_t anchor = plan.vertex[k]; anchor != kNoVertex) {
-        following[anchor] = plan.next[k];
-        current[anchor] = k;
-    }
+    for (std::uint32_t v = from.vertices_end; v < to.vertices_end; ++v) add_vertex(v);
+    if (const std::uint32_t anchor = plan.vertex[k]; anchor != kNoVertex) turn(anchor, plan.next[k], k);
     for (std::uint32_t i = plan.needs_begin[k]; i < plan.needs_begin[k + 1]; ++i) ++users[plan.needs[i]];
     applied[k] = 1;
     ++applied_count;
@@ -146,9 +157,9 @@ void ViewMesh::State::undo(std::uint32_t k) {
     const Split from = before(k);
     const Split& to = mesh.splits[k];
     for (std::uint32_t v = to.vertices_end; v-- > from.vertices_end;) {
-        const std::uint32_t hole = place[v], last = active.back();
-        active[hole] = last;
-        place[last] = hole;
+        const std::uint32_t hole = place[v];
+        active[hole] = active.back();
+        place[active[hole].vertex] = hole;
         active.pop_back();
     }
     for (std::uint32_t i = to.moves_end; i-- > from.moves_end;) {
@@ -162,10 +173,7 @@ void ViewMesh::State::undo(std::uint32_t k) {
         drawn[at][change.corner % 3] = mesh.parents[change.vertex];
         dirty_triangles.mark(at);
     }
-    if (const std::uint32_t anchor = plan.vertex[k]; anchor != kNoVertex) {
-        following[anchor] = k;
-        current[anchor] = plan.previous[k];
-    }
+    if (const std::uint32_t anchor = plan.vertex[k]; anchor != kNoVertex) turn(anchor, k, plan.previous[k]);
     for (std::uint32_t i = plan.needs_begin[k]; i < plan.needs_begin[k + 1]; ++i) --users[plan.needs[i]];
     applied[k] = 0;
     --applied_count;
@@ -195,9 +203,8 @@ std::size_t ViewMesh::State::force(std::uint32_t k, std::size_t most) {
 
 /// What a split's error spans on the screen (Hoppe 1997, section 4: sphere against frustum, cone of normals
 /// against the eye, deviation over distance).
-float ViewMesh::State::pixels(const View& view, std::uint32_t k) const {
+float ViewMesh::State::pixels(const View& view, const ViewNode& node) {
     constexpr float kAll = std::numeric_limits<float>::infinity();
-    const ViewNode& node = plan.nodes[k];
     const Float3& p = node.centre;
     for (const ViewPlane& plane : view.planes)
         if (plane.x * p.x + plane.y * p.y + plane.z * p.z + plane.w < -node.radius) return 0;
@@ -249,9 +256,10 @@ ViewUpdated ViewMesh::update(const View& view, const ViewBudget& budget) {
         }
         if (s.returning_cursor >= returning) s.returning_cursor = 0;
         const std::uint32_t k = s.plan.returning[s.returning_cursor++];
+        const ViewNode& node = s.plan.nodes[k];
         if (!s.applied[k]) {
-            if (s.wanted(view, k)) refine(k);
-        } else if (s.undoable(view, k)) {
+            if (s.wanted(view, node)) refine(k);
+        } else if (s.users[k] == 0 && s.unwanted(view, node)) {
             s.undo(k);
             ++result.coarsened;
         }
@@ -262,16 +270,21 @@ ViewUpdated ViewMesh::update(const View& view, const ViewBudget& budget) {
             break;
         }
         if (s.cursor >= s.active.size()) s.cursor = 0;
-        const std::uint32_t v = s.active[s.cursor];
+        const Front& seen = s.active[s.cursor++];
+        const bool finer = seen.following != kNoSplit && s.wanted(view, seen.after);
+        if (!finer && (seen.current == kNoSplit || !s.unwanted(view, seen.done))) continue;
+        const std::uint32_t v = seen.vertex;
         const std::size_t changed = result.refined + result.coarsened;
-        while (left() > 0 && s.following[v] != kNoSplit && s.wanted(view, s.following[v]))
-            refine(s.following[v]);
+        // Its place may change with every split.
+        const auto front = [&]() -> const Front& { return s.active[s.place[v]]; };
+        while (left() > 0 && front().following != kNoSplit && s.wanted(view, front().after))
+            refine(front().following);
         if (result.refined + result.coarsened == changed)
-            while (left() > 0 && s.undoable(view, s.current[v])) {
-                s.undo(s.current[v]);
+            while (left() > 0 && front().current != kNoSplit && s.unwanted(view, front().done) &&
+                   s.users[front().current] == 0) {
+                s.undo(front().current);
                 ++result.coarsened;
             }
-        ++s.cursor;
     }
     result.settled = whole && result.refined + result.coarsened == 0;
     return result;
@@ -315,12 +328,11 @@ std::size_t ViewMesh::memory() const {
     for (const Attribute& attribute : m.attributes) bytes += bytes_of(attribute.values);
     for (const auto& values : m.moved_values) bytes += bytes_of(values);
     const ViewPlan& p = s.plan;
-    for (const auto* v :
-         {&p.needs_begin, &p.needs, &p.vertex, &p.next, &p.previous, &p.first, &p.born, &p.returning,
-          &s.users, &s.following, &s.current, &s.number, &s.slot, &s.active, &s.place, &s.stack})
+    for (const auto* v : {&p.needs_begin, &p.needs, &p.vertex, &p.next, &p.previous, &p.first, &p.born,
+                          &p.returning, &s.users, &s.number, &s.slot, &s.place, &s.stack})
         bytes += bytes_of(*v);
-    return bytes + bytes_of(p.nodes) + bytes_of(s.applied) + bytes_of(s.drawn) + s.dirty_triangles.memory() +
-           s.dirty_vertices.memory();
+    return bytes + bytes_of(s.active) + bytes_of(p.nodes) + bytes_of(s.applied) + bytes_of(s.drawn) +
+           s.dirty_triangles.memory() + s.dirty_vertices.memory();
 }
 
 }  // namespace vsplit
