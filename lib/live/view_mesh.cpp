@@ -206,15 +206,20 @@ std::size_t ViewMesh::State::force(std::uint32_t k, std::size_t most) {
 float ViewMesh::State::pixels(const View& view, const ViewNode& node) {
     constexpr float kAll = std::numeric_limits<float>::infinity();
     const Float3& p = node.centre;
+    const float x = view.eye.x - p.x, y = view.eye.y - p.y, z = view.eye.z - p.z;
+    const float square = x * x + y * y + z * z;
+    // Most are too small from this far, which takes neither a root nor a plane to see.
+    if (const float low = view.pixels * view.hysteresis; low > 0) {
+        const float reach = node.radius + node.error * view.pixels_at_distance_1 / low;
+        if (square >= reach * reach && square > node.radius * node.radius) return 0;
+    }
     for (const ViewPlane& plane : view.planes)
         if (plane.x * p.x + plane.y * p.y + plane.z * p.z + plane.w < -node.radius) return 0;
     if (!(view.pixels > 0)) return kAll;
     if (node.error <= 0) return 0;
-    const float x = view.eye.x - p.x, y = view.eye.y - p.y, z = view.eye.z - p.z;
-    const float far = std::sqrt(x * x + y * y + z * z);
+    const float far = std::sqrt(square);
     if (far <= node.radius) return kAll;
     const float all = node.error * view.pixels_at_distance_1 / (far - node.radius);
-    if (all <= view.pixels * view.hysteresis) return all;
     // Angles to the normal: of the eye, and how far normals and directions stray from these.
     const float stray = node.spread + node.radius / far;
     if (!(stray < 1)) return all;
