@@ -15,6 +15,18 @@ include(\${CMAKE_CURRENT_LIST_DIR}/vsplit-targets.cmake)
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/vsplit-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/vsplit-config.cmake ${PROJECT_BINARY_DIR}/vsplit-config-version.cmake
         DESTINATION ${vsplit_package})
+# And for builds without CMake; paths follow the file, so that the prefix may move.
+file(RELATIVE_PATH vsplit_up /prefix/${CMAKE_INSTALL_LIBDIR}/pkgconfig /prefix)
+file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/vsplit.pc @ONLY CONTENT
+"prefix=\${pcfiledir}/@vsplit_up@
+Name: vsplit
+Description: @PROJECT_DESCRIPTION@
+Version: @PROJECT_VERSION@
+Cflags: -I\${prefix}/@CMAKE_INSTALL_INCLUDEDIR@
+Libs: -L\${prefix}/@CMAKE_INSTALL_LIBDIR@ -lvsplit
+Libs.private: -ldraco -lstdc++ -lm
+")
+install(FILES ${PROJECT_BINARY_DIR}/vsplit.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSES/MIT.txt DESTINATION ${CMAKE_INSTALL_DOCDIR})
 if(TARGET vsplit_command)
   install(TARGETS vsplit_command)

@@ -7,6 +7,7 @@
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -30,6 +31,12 @@ constexpr double kShareOfCoarser = 0.8;
 /// many of them.
 constexpr double kJump = 2;
 constexpr std::size_t kMoreLevels = 16;
+/// A jump is not looked for more closely than this share of a level's splits: to find the one split that
+/// makes it takes ten measurements of a large mesh more, and the levels beside it have its error at worst.
+constexpr std::size_t kJumpShare = 64;
+/// Bounds of the triangles' centres are known down to this share of what is known to be as far: they say
+/// where samples go, and those farthest get them.
+constexpr double kCentresShare = 0.5;
 /// Coarse levels look at the input's vertices in steps: the distance varies as slowly as their triangles are
 /// large.
 constexpr std::size_t kDensePass = 50000;
@@ -216,8 +223,11 @@ class Calibrator {
         const double back = from_vertices(coarse, stars, apart);
         std::vector<float> apart_triangles(coarse.triangles.size(), 0);
         const double centres =
-            coarse.triangles.size() > kSamples / 6 ? from_centres(coarse, apart_triangles) : 0;
-        return std::max({forth, back, centres, from_triangles(coarse, stars, apart, apart_triangles)});
+            coarse.triangles.size() > kSamples / 6
+                ? from_centres(coarse, kCentresShare * std::max(forth, back), apart_triangles)
+                : 0;
+        const double known = std::max({enough, forth, back, centres});
+        return std::max(known, from_triangles(coarse, stars, apart, apart_triangles, known));
     }
 
   private:
@@ -284,37 +294,41 @@ class Calibrator {
         std::optional<TriangleTree> tree;
         if (orphans || coarse.triangles.size() <= kTreeTriangles) tree.emplace(coarse);
         return farthest(probes, enough2_, [&](Probe& probe, double most) {
-            return tree ? tree->closest(to_double(full_.positions[probe.index]), TriangleTree::kNoGuess, most)
+            return tree ? tree->closest(to_double(full_.positions[probe.index]), TriangleTree::kNoGuess, most,
+                                        probe.bound2)
                               .distance2
                         : searched_distance2(coarse, stars, ancestors[probe.index],
                                              to_double(full_.positions[probe.index]), most);
         });
     }
 
-    /// The level's vertices to the input. Each is still one of the input's, elsewhere: that one's star bounds
-    /// the distance.
+    /// The level's vertices to the input. Each is still one of the input's, elsewhere: a walk from there
+    /// bounds the distance.
     double from_vertices(const Mesh& coarse, const Stars& stars, std::vector<float>& apart) const {
         std::vector<Probe> probes(coarse.positions.size(), Probe{0, 0});
         tbb::parallel_for(tbb::blocked_range<std::size_t>(0, probes.size(), 4096),
                           [&](const tbb::blocked_range<std::size_t>& range) {
                               for (std::size_t v = range.begin(); v < range.end(); ++v)
                                   if (stars.begin[v] < stars.begin[v + 1])
-                                      probes[v] = {star_distance2(full_, full_stars_, std::uint32_t(v),
-                                                                  to_double(coarse.positions[v]), enough2_),
+                                      probes[v] = {walked_distance2(full_, full_stars_, std::uint32_t(v),
+                                                                    to_double(coarse.positions[v]), enough2_),
                                                    std::uint32_t(v)};
                           });
         const double most = farthest(probes, enough2_, [&](Probe& probe, double least) {
-            return probe.bound2 =
-                       tree_->closest(to_double(coarse.positions[probe.index]), TriangleTree::kNoGuess, least)
-                           .distance2;
+            return probe.bound2 = tree_
+                                      ->closest(to_double(coarse.positions[probe.index]),
+                                                TriangleTree::kNoGuess, least, probe.bound2)
+                                      .distance2;
         });
         for (const Probe& probe : probes)
             apart[probe.index] = std::max(apart[probe.index], float(probe.bound2));
         return most;
     }
 
-    /// The centres of a level's many triangles to the input; its stars at the corners bound the distance.
-    double from_centres(const Mesh& coarse, std::vector<float>& apart_triangles) const {
+    /// The centres of a level's many triangles to the input; a walk from a corner bounds the distance.
+    /// What is not farther than `known` need not be known.
+    double from_centres(const Mesh& coarse, double known, std::vector<float>& apart_triangles) const {
+        const double enough2 = std::max(enough2_, known * known);
         std::vector<Probe> probes(coarse.triangles.size());
         const auto centre = [&](std::uint32_t t) {
             const Triangle& c = coarse.triangles[t];
@@ -322,32 +336,30 @@ class Calibrator {
                     to_double(coarse.positions[c[2]])) *
                    (1.0 / 3);
         };
-        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, probes.size(), 4096),
-                          [&](const tbb::blocked_range<std::size_t>& range) {
-                              for (std::size_t i = range.begin(); i < range.end(); ++i) {
-                                  const auto t = std::uint32_t(i);
-                                  const Double3 p = centre(t);
-                                  double bound2 = std::numeric_limits<double>::infinity();
-                                  for (const std::uint32_t v : coarse.triangles[t]) {
-                                      bound2 = std::min(bound2,
-                                                        star_distance2(full_, full_stars_, v, p, enough2_));
-                                      if (bound2 <= enough2_) break;
-                                  }
-                                  probes[i] = {bound2, t};
-                              }
-                          });
-        const double most = farthest(probes, enough2_, [&](Probe& probe, double least) {
+        tbb::parallel_for(
+            tbb::blocked_range<std::size_t>(0, probes.size(), 4096),
+            [&](const tbb::blocked_range<std::size_t>& range) {
+                for (std::size_t i = range.begin(); i < range.end(); ++i) {
+                    const auto t = std::uint32_t(i);
+                    const Double3 p = centre(t);
+                    probes[i] = {walked_distance2(full_, full_stars_, coarse.triangles[t][0], p, enough2), t};
+                }
+            });
+        const double most = farthest(probes, enough2, [&](Probe& probe, double least) {
             return probe.bound2 =
-                       tree_->closest(centre(probe.index), TriangleTree::kNoGuess, least).distance2;
+                       tree_->closest(centre(probe.index), TriangleTree::kNoGuess, least, probe.bound2)
+                           .distance2;
         });
         for (const Probe& probe : probes) apart_triangles[probe.index] = float(probe.bound2);
         return most;
     }
 
     /// Samples on the level's triangles to the input; of many triangles those where the surfaces are farthest
-    /// apart, and those at boundaries, which may reach beyond the input without any vertex being far.
+    /// apart, and those at boundaries, which may reach beyond the input without any vertex being far. What is
+    /// not farther than `known` is of no interest: the largest that all threads have found grows with them,
+    /// and at the end is the same in whatever order they find it.
     double from_triangles(const Mesh& coarse, const Stars& stars, const std::vector<float>& apart,
-                          const std::vector<float>& apart_triangles) const {
+                          const std::vector<float>& apart_triangles, double known) const {
         std::vector<Probe> triangles(coarse.triangles.size());
         for (std::uint32_t t = 0; t < triangles.size(); ++t) {
             const Triangle& c = coarse.triangles[t];
@@ -366,10 +378,11 @@ class Calibrator {
                          [](const Probe& a, const Probe& b) {
                              return a.bound2 != b.bound2 ? a.bound2 > b.bound2 : a.index < b.index;
                          });
-        std::vector<double> farthest2(asked, 0);
+        std::atomic<double> farthest2 = known * known;
         tbb::parallel_for(tbb::blocked_range<std::size_t>(0, asked, 256),
                           [&](const tbb::blocked_range<std::size_t>& range) {
                               std::uint32_t guess = TriangleTree::kNoGuess;
+                              double most = farthest2;
                               for (std::size_t i = range.begin(); i < range.end(); ++i) {
                                   const Triangle& t = coarse.triangles[triangles[i].index];
                                   const Double3 a = to_double(coarse.positions[t[0]]),
@@ -377,15 +390,22 @@ class Calibrator {
                                                 ac = to_double(coarse.positions[t[2]]) - a;
                                   for (std::size_t j = 0; j <= n; ++j)
                                       for (std::size_t k = 0; j + k <= n; ++k) {
-                                          const auto hit = tree_->closest(
-                                              a + ab * (double(j) / double(n)) + ac * (double(k) / double(n)),
-                                              guess, std::max(enough2_, farthest2[i]));
+                                          const Double3 p =
+                                              a + ab * (double(j) / double(n)) + ac * (double(k) / double(n));
+                                          // Among small triangles a short walk finds something near enough.
+                                          if (asked < coarse.triangles.size() &&
+                                              walked_distance2(full_, full_stars_, t[0], p, most) <= most)
+                                              continue;
+                                          const auto hit = tree_->closest(p, guess, most);
                                           guess = hit.slot;
-                                          farthest2[i] = std::max(farthest2[i], hit.distance2);
+                                          while (most < hit.distance2 &&
+                                                 !farthest2.compare_exchange_weak(most, hit.distance2)) {
+                                          }
+                                          most = std::max(most, hit.distance2);
                                       }
                               }
                           });
-        return std::sqrt(farthest2.empty() ? 0 : *std::max_element(farthest2.begin(), farthest2.end()));
+        return std::sqrt(farthest2);
     }
 
     LiveMesh live_;
@@ -431,7 +451,8 @@ bool calibrate_errors(ProgressiveMesh& mesh, const Progress& progress) {
             std::size_t at = 0;
             double jump = kJump;
             for (std::size_t i = 1; i < levels.size(); ++i)
-                if (levels[i - 1] - levels[i] > 1 && measured[i] > jump * measured[i - 1]) {
+                if (levels[i - 1] - levels[i] > 1 + levels[i - 1] / kJumpShare &&
+                    measured[i] > jump * measured[i - 1]) {
                     jump = measured[i] / measured[i - 1];
                     at = i;
                 }

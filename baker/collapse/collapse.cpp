@@ -6,6 +6,8 @@
 
 #include "calibrate.hpp"
 #include "collapser.hpp"
+#include "measure.hpp"
+#include "outliers.hpp"
 
 namespace vsplit::bake {
 namespace {
@@ -56,11 +58,15 @@ Result<CollapseResult> collapse(const Mesh& mesh, const CollapseOptions& options
     }
     result.mesh.origin = mesh.origin;
     result.report.collapse_cpu_seconds = cpu_seconds() - start;
-    if (options.calibrate) {
-        start = cpu_seconds();
-        if (!calibrate_errors(result.mesh, progress)) return cancelled;
-        result.report.calibrate_cpu_seconds = cpu_seconds() - start;
+    start = cpu_seconds();
+    const bool put_off = options.put_off_outliers && options.cost != Cost::kPaper;
+    if (put_off || options.calibrate) {
+        std::vector<float> deviations = measure_collapses(result.mesh, progress);
+        if (deviations.size() != result.mesh.splits.size()) return cancelled;
+        if (put_off) put_off_outliers(result.mesh, deviations);
+        if (options.calibrate && !bound_errors(result.mesh, deviations, progress)) return cancelled;
     }
+    result.report.calibrate_cpu_seconds = cpu_seconds() - start;
     return result;
 }
 

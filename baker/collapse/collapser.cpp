@@ -118,8 +118,10 @@ void Collapser::lock() {
         }
         if (lock) locked.push_back(v);
     }
+    if (state_.mesh.has_wedges()) state_.locked.assign(state_.mesh.vertex_count(), false);
     for (const std::uint32_t v : locked) {
         state_.mesh.fix(v);
+        if (state_.mesh.has_wedges()) state_.locked[v] = true;
         state_.components.keep(state_.components.of(v));
     }
 }
@@ -272,12 +274,14 @@ bool Collapser::run(const Progress& progress) {
     };
     // Later passes get past what a guard stopped; the shape of the coarsest levels counts less than that
     // there is one.
-    const Strictness passes[] = {
+    std::vector<Strictness> passes{
         state_.strictness, {0.0, 1e-3, kHub, false, true}, {-0.2, 1e-5, 2 * kHub, false, true}};
+    // Parts with seams get stuck in more ways; there the last pass only asks for triangles with an area.
+    if (mesh.has_wedges()) passes.push_back({-1, 0, 2 * kHub, false, false});
     std::uint64_t number = 0;
     for (const Strictness& strictness : passes) {
         state_.strictness = strictness;
-        if (&strictness != passes) {
+        if (&strictness != passes.data()) {
             if (mesh.live_vertices() <= 64) break;
             for (std::uint32_t v = 0; v < mesh.vertex_count(); ++v)
                 if (mesh.kind(v) != VertexKind::kDead) {

@@ -14,7 +14,8 @@ namespace vsplit::bake {
 
 class Components {
   public:
-    /// A part vanishes only when at most this many of its triangles are left: one split has to bring it back.
+    /// A part vanishes only when at most this many of its triangles are left: one split has to bring it
+    /// back. Four times as many of a mesh with attributes.
     static constexpr std::uint32_t kMaxVanishing = 64;
 
     explicit Components(const StarMesh& mesh);

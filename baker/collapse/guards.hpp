@@ -51,6 +51,8 @@ class Guards {
 
     /// The link condition, and what else collapsing the edge would do to the topology.
     bool keeps_topology(const EdgeStar& star);
+    /// Whether anything is left at all, topology or not.
+    static bool leaves_something(const EdgeStar& star) { return star.size != 0; }
     /// No triangle flips, folds over or becomes a sliver when the remaining vertex goes where `star` is
     /// placed.
     bool keeps_shape(const EdgeStar& star, Double3 place, const std::vector<VertexHistory>& histories,

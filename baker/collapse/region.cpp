@@ -5,8 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "wedge_cost.hpp"
+
 namespace vsplit::bake {
 namespace {
+
+/// What a fold costs more that the rules of topology or seams forbid.
+constexpr double kRelaxed = 4;
 
 std::uint32_t nearer_end(const EdgeStar& star, Double3 place) {
     return length2(place - star.pv) < length2(place - star.pu) ? star.v : star.u;
@@ -123,7 +128,22 @@ void Region::price(std::uint32_t u, EdgeList& list) const {
 Fold Region::fold_of(std::uint32_t u, std::uint32_t v) const {
     // A hub's edges would break the limit; pricing them at each collapse near it would be quadratic.
     const bool hub = std::max(mesh_.star(u).size(), mesh_.star(v).size()) > state_.strictness.max_valence;
-    return hub ? Fold::kNever : fold_rule(mesh_, u, v);
+    if (hub) return Fold::kNever;
+    const Fold fold = fold_rule(mesh_, u, v);
+    return fold == Fold::kNever && mesh_.has_wedges() && !state_.paper ? relaxed_fold(u, v) : fold;
+}
+
+Fold Region::relaxed_fold(std::uint32_t u, std::uint32_t v) const {
+    const bool open_u = mesh_.vertex(u).open, open_v = mesh_.vertex(v).open;
+    if (state_.locked[u] && state_.locked[v]) return Fold::kNever;
+    if (state_.locked[u] || state_.locked[v]) return state_.locked[u] ? Fold::kIntoFirst : Fold::kIntoSecond;
+    // Boundaries stay where they are, and apart from each other, until nothing else is left.
+    if (state_.strictness.keep_orientation) {
+        if (open_u && open_v) return Fold::kNever;
+        if (open_u || open_v) return open_u ? Fold::kIntoFirst : Fold::kIntoSecond;
+    }
+    const EdgeQuadric<double> edge(shape_of(mesh_, u), shape_of(mesh_, v), state_.options);
+    return edge.end(1).cost < edge.end(-1).cost ? Fold::kIntoSecond : Fold::kIntoFirst;
 }
 
 void Region::list_edges(std::uint32_t u, EdgeList& list) const {
@@ -140,26 +160,57 @@ Region::Outcome Region::attempt(std::uint32_t u, const Option& option, Bucket bu
     cost = kNeverCost;
     if (!is_whole() && !star_inside(option.other)) return Outcome::kElsewhere;
     star_.gather(mesh_, u, option.other);
-    if (!guards_.keeps_topology(star_)) return Outcome::kWaits;
-    // What will be stored decides: the guards look at the rounded place.
-    const Float3 rounded = option.fold == Fold::kIntoFirst    ? mesh_.raw_position(u)
-                           : option.fold == Fold::kIntoSecond ? mesh_.raw_position(option.other)
-                           : state_.options.placement == Placement::kEndpoint
-                               ? mesh_.raw_position(nearer_end(star_, option.candidate.place))
-                               : mesh_.round(option.candidate.place);
-    const Double3 place = mesh_.work(rounded);
-    star_.place_at(place);
-    if (!guards_.keeps_shape(star_, place, state_.histories, state_.strictness)) return Outcome::kWaits;
-    const Deviation deviation = deviation_of(star_, place, state_.histories);
-    const double d = deviation.largest;
+    bool relaxed = false;
+    if (mesh_.has_wedges() && !state_.paper) {
+        if (!Guards::leaves_something(star_)) return Outcome::kWaits;
+        relaxed = !guards_.keeps_topology(star_) || fold_rule(mesh_, u, option.other) == Fold::kNever;
+    } else if (!guards_.keeps_topology(star_)) {
+        return Outcome::kWaits;
+    }
     const double weight = 0.5 * (double(mesh_.vertex(u).weight) + double(mesh_.vertex(option.other).weight));
-    // The same dimension as the cost, so that one factor serves every level: area times distance^3.
-    const double limit =
-        state_.paper ? 0 : state_.options.deviation_limit * d * d * d * state_.mean_star * weight;
-    cost = float(std::max(option.candidate.cost, limit));
-    if (mesh_.has_wedges()) {
-        wedge_star_.gather(mesh_, star_, parent_of(star_, option));
-        cost += float(weight * attribute_cost(mesh_, star_, wedge_star_, *state_.wedges, place));
+    if (mesh_.has_wedges()) wedge_star_.gather(mesh_, star_, parent_of(star_, option));
+    Deviation deviation;
+    // What will be stored decides: the guards look at the rounded place.
+    const auto judge = [&](const Float3& rounded, double geometric) {
+        const Double3 place = mesh_.work(rounded);
+        star_.place_at(place);
+        if (!guards_.keeps_shape(star_, place, state_.histories, state_.strictness)) return kNeverCost;
+        deviation = deviation_of(star_, place, state_.histories);
+        const double d = deviation.largest;
+        // The same dimension as the cost, so that one factor serves every level: area times distance^3.
+        const double limit =
+            state_.paper ? 0 : state_.options.deviation_limit * d * d * d * state_.mean_star * weight;
+        float total = float(std::max(geometric, limit) * (relaxed ? kRelaxed : 1));
+        if (mesh_.has_wedges())
+            total += float(weight * attribute_cost(mesh_, star_, wedge_star_, *state_.wedges, place));
+        return total;
+    };
+    Float3 rounded = option.fold == Fold::kIntoFirst    ? mesh_.raw_position(u)
+                     : option.fold == Fold::kIntoSecond ? mesh_.raw_position(option.other)
+                     : state_.options.placement == Placement::kEndpoint
+                         ? mesh_.raw_position(nearer_end(star_, option.candidate.place))
+                         : mesh_.round(option.candidate.place);
+    cost = judge(rounded, option.candidate.cost);
+    if (mesh_.has_wedges() && !state_.paper && option.fold == Fold::kAnywhere && bucket_of(cost) <= bucket) {
+        // At either end the attributes may be kept so much better that it makes up for the place.
+        const EdgeQuadric<double> edge(shape_of(mesh_, u), shape_of(mesh_, option.other), state_.options);
+        const Deviation best = deviation;
+        Deviation chosen = best;
+        Float3 place = rounded;
+        bool moved = false;
+        for (const double side : {-1.0, 1.0}) {
+            const auto end = edge.end(side);
+            const Float3& there = mesh_.raw_position(side < 0 ? u : option.other);
+            const float price = judge(there, edge.price(end.cost));
+            moved = true;
+            if (price >= cost) continue;
+            cost = price;
+            place = there;
+            chosen = deviation;
+        }
+        rounded = place;
+        deviation = chosen;
+        if (moved) star_.place_at(mesh_.work(rounded));
     }
     if (bucket_of(cost) > bucket) return Outcome::kWaits;
     if (!is_whole()) {
@@ -167,11 +218,12 @@ Region::Outcome Region::attempt(std::uint32_t u, const Option& option, Bucket bu
         // What is not inner is shaped anew, and its neighbours are read for it.
         for (std::size_t i = 0; i < star_.size; ++i)
             for (const std::uint32_t w : {star_.a[i], star_.b[i]})
-                if (mesh_.kind(w) != VertexKind::kInner && !star_inside(w)) return Outcome::kElsewhere;
+                if ((relaxed || mesh_.kind(w) != VertexKind::kInner) && !star_inside(w))
+                    return Outcome::kElsewhere;
     } else {
         mesh_.make_room(star_.size);
     }
-    apply(star_, option, rounded, deviation);
+    apply(star_, option, rounded, deviation, relaxed);
     return Outcome::kDone;
 }
 
@@ -193,13 +245,17 @@ void Region::fold_wedges(const EdgeStar& star, Double3 place) {
     for (std::size_t i = 0; i < wedge_star_.pairs.size(); ++i)
         mix_at(mesh_, star, wedge_star_, wedge_star_.pairs[i], *state_.wedges, place,
                std::span(mixed).subspan(stride * i, stride));
+    for (std::size_t i = 0; i < wedge_star_.pairs.size(); ++i)
+        join_samples(mesh_, star, wedge_star_.pairs[i], *state_.wedges, place,
+                     std::span(mixed).subspan(stride * i, stride));
     for (std::size_t i = 0; i < wedge_star_.pairs.size(); ++i) {
         const auto from = std::span(mixed).subspan(stride * i, stride);
         std::copy(from.begin(), from.end(), state_.wedges->of(wedge_star_.pairs[i].parent).begin());
     }
 }
 
-void Region::apply(const EdgeStar& star, const Option& option, Float3 place, const Deviation& deviation) {
+void Region::apply(const EdgeStar& star, const Option& option, Float3 place, const Deviation& deviation,
+                   bool relaxed) {
     const std::uint32_t parent = parent_of(star, option), child = star.u + star.v - parent;
     if (mesh_.has_wedges()) fold_wedges(star, mesh_.work(place));
     const TrianglePart<double> part = update_ring(mesh_, star);
@@ -231,6 +287,7 @@ void Region::apply(const EdgeStar& star, const Option& option, Float3 place, con
     if (!state_.weights.empty())
         state_.weights[parent] = 0.5f * (state_.weights[parent] + state_.weights[child]);
     if (state_.paper) state_.paper->merge(parent, child);
+    if (relaxed) classify_around(star);
     if (mesh_.kind(parent) == VertexKind::kInner)
         set_part(shape, part);
     else
@@ -239,10 +296,28 @@ void Region::apply(const EdgeStar& star, const Option& option, Float3 place, con
     ring_edges_.clear();
     visit_neighbours(mesh_, parent, ring_, [&](std::uint32_t w) { ring_edges_.add(w, Fold::kNever); });
     for (const std::uint32_t w : ring_edges_.others)
-        if (mesh_.kind(w) != VertexKind::kInner && mesh_.star(w).size() <= kHub)
+        if ((relaxed || mesh_.kind(w) != VertexKind::kInner) && mesh_.star(w).size() <= kHub)
             rebuild_shape(mesh_, w, state_.options.boundary_weight, ring_);
     queue_.remove(child);
     reprice(parent, child, bucket_of(float(option.candidate.cost)));
+}
+
+void Region::classify_around(const EdgeStar& star) {
+    const auto again = [&](std::uint32_t v) {
+        if (mesh_.kind(v) == VertexKind::kDead || state_.locked[v]) return;
+        mesh_.classify(v, classify_scratch_);
+        if (mesh_.kind(v) != VertexKind::kDead) return;
+        // It had no triangles but those that went.
+        ++lost_vertices_;
+        queue_.remove(v);
+    };
+    again(star.u);
+    again(star.v);
+    for (std::size_t i = 0; i < star.size; ++i) {
+        again(star.a[i]);
+        again(star.b[i]);
+    }
+    for (const std::uint32_t w : star.opposite) again(w);
 }
 
 void Region::reprice(std::uint32_t parent, std::uint32_t child, Bucket now) {
@@ -359,7 +434,9 @@ void Region::process(std::uint32_t u, Bucket bucket) {
 void Region::process_component(std::uint32_t component, Bucket bucket) {
     if (!state_.components.may_vanish(component)) return;
     flush();
-    if (state_.components.live_triangles(component) > Components::kMaxVanishing) {
+    // Parts with seams get stuck at more triangles than plain ones.
+    const std::uint32_t most = Components::kMaxVanishing * (mesh_.has_wedges() ? 4 : 1);
+    if (state_.components.live_triangles(component) > most) {
         // Not small enough yet; again when all costs have doubled.
         if (bucket + kBucketsPerOctave < bucket_of(kNeverCost))
             queue_.push(mesh_.vertex_count() + component, Bucket(bucket + kBucketsPerOctave));

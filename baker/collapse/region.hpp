@@ -59,6 +59,7 @@ struct CollapseState {
     double area = 0;       ///< Of all triangles of the input; working units.
     double mean_star = 0;  ///< Area around an edge of the mesh as it is now, if triangles were all alike.
     std::vector<VertexHistory> histories;
+    std::vector<bool> locked;     ///< Of a mesh with wedges: never move nor go.
     std::vector<float> weights;   ///< Empty: none painted.
     std::vector<Target> targets;  ///< kNoVertex: list all again.
     std::vector<Bucket> slots;    ///< Where each vertex waits, then each component.
@@ -129,6 +130,9 @@ class Region {
     Candidate evaluate(std::uint32_t u, std::uint32_t v, Fold fold) const;
     /// How an edge may fold as strictly as things are now.
     Fold fold_of(std::uint32_t u, std::uint32_t v) const;
+    /// How one may that the rules of topology and seams forbid: holes close, seams end. Only meshes with
+    /// wedges are so relaxed.
+    Fold relaxed_fold(std::uint32_t u, std::uint32_t v) const;
     /// Prices all edges of the list, which are those of `u`.
     void price(std::uint32_t u, EdgeList& list) const;
     /// The edges that `u` owns, with their costs.
@@ -140,7 +144,10 @@ class Region {
     Outcome attempt(std::uint32_t u, const Option& option, Bucket bucket, float& cost);
     /// Which end stays.
     std::uint32_t parent_of(const EdgeStar& star, const Option& option) const;
-    void apply(const EdgeStar& star, const Option& option, Float3 place, const Deviation& deviation);
+    void apply(const EdgeStar& star, const Option& option, Float3 place, const Deviation& deviation,
+               bool relaxed);
+    /// After a relaxed fold: the kinds of vertices are others now.
+    void classify_around(const EdgeStar& star);
     /// After a collapse: prices the new vertex's edges, and offers them to those neighbours who own them.
     void fold_wedges(const EdgeStar& star, Double3 place);
     void reprice(std::uint32_t parent, std::uint32_t child, Bucket now);
@@ -167,6 +174,7 @@ class Region {
     std::vector<Neighbour> ring_;
     EdgeStar star_;
     WedgeStar wedge_star_;
+    StarMesh::ClassifyScratch classify_scratch_;
     EdgeList ring_edges_;  // of the new vertex
 };
 

@@ -118,73 +118,72 @@ StarMesh::StarMesh(const Mesh& mesh, const std::vector<Triangle>& corners,
 }
 
 void StarMesh::classify() {
-    // A curve: two special edges of one kind.
-    const auto is_alike = [](std::size_t special, const Neighbour* const(&curve)[2]) {
-        return special == 2 && curve[0]->out + curve[0]->in == curve[1]->out + curve[1]->in &&
-               curve[0]->seam == curve[1]->seam;
-    };
-    tbb::parallel_for(
-        tbb::blocked_range<std::uint32_t>(0, vertex_count(), 4096),
-        [&](const tbb::blocked_range<std::uint32_t>& range) {
-            std::vector<Neighbour> ring;
-            std::vector<std::uint32_t> roots;
-            for (std::uint32_t v = range.begin(); v < range.end(); ++v) {
-                if (vertices_[v].star_size == 0) {
-                    vertices_[v].kind = VertexKind::kDead;
-                    continue;
-                }
-                neighbours_of(*this, v, ring);
-                std::size_t special = 0;
-                const Neighbour* curve[2] = {};
-                for (const Neighbour& n : ring)
-                    if (n.special()) {
-                        if (special < 2) curve[special] = &n;
-                        ++special;
-                    }
-                const auto is_boundary = [](const Neighbour& n) { return n.out + n.in == 1; };
-                const auto boundaries =
-                    special == 0 ? 0 : std::count_if(ring.begin(), ring.end(), is_boundary);
-                vertices_[v].open = boundaries != 0;
-                if (special != 0 && !is_alike(special, curve)) {
-                    // Several seams, or seams and a boundary, of an orderly fan.
-                    const bool orderly = std::all_of(ring.begin(), ring.end(), [&](const Neighbour& n) {
-                        return is_boundary(n) || (n.out == 1 && n.in == 1);
-                    });
-                    if (!has_wedges() || !orderly || (boundaries != 0 && boundaries != 2)) continue;
-                    vertices_[v].junction = 1;
-                }
-                vertices_[v].seam = has_wedges() && std::any_of(ring.begin(), ring.end(),
-                                                                [](const Neighbour& n) { return n.seam; });
-                // The link must hang together: otherwise several fans meet in this one point.
-                roots.resize(ring.size());
-                std::iota(roots.begin(), roots.end(), 0u);
-                const bool sorted = vertices_[v].star_size > kLargeStar;
-                const auto index_of = [&](std::uint32_t w) {
-                    if (sorted)
-                        return std::uint32_t(std::lower_bound(ring.begin(), ring.end(), w,
-                                                              [](const Neighbour& n, std::uint32_t x) {
-                                                                  return n.vertex < x;
-                                                              }) -
-                                             ring.begin());
-                    return std::uint32_t(std::find_if(ring.begin(), ring.end(),
-                                                      [&](const Neighbour& n) { return n.vertex == w; }) -
-                                         ring.begin());
-                };
-                for (const std::uint32_t t : star(v)) {
-                    std::uint32_t ends[2];
-                    int n = 0;
-                    for (const std::uint32_t w : triangles_[t])
-                        if (w != v) ends[n++] = index_of(w);
-                    roots[find_root(roots, ends[0])] = find_root(roots, ends[1]);
-                }
-                bool connected = true;
-                for (std::uint32_t i = 1; i < ring.size(); ++i)
-                    connected &= find_root(roots, i) == find_root(roots, 0);
-                if (connected) vertices_[v].kind = special == 0 ? VertexKind::kInner : VertexKind::kCurve;
-            }
-        });
+    tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, vertex_count(), 4096),
+                      [&](const tbb::blocked_range<std::uint32_t>& range) {
+                          ClassifyScratch scratch;
+                          for (std::uint32_t v = range.begin(); v < range.end(); ++v) classify(v, scratch);
+                      });
     live_vertices_ = static_cast<std::uint32_t>(std::count_if(
         vertices_.begin(), vertices_.end(), [](const Vertex& v) { return v.kind != VertexKind::kDead; }));
+}
+
+void StarMesh::classify(std::uint32_t v, ClassifyScratch& scratch) {
+    auto& [ring, roots] = scratch;
+    Vertex& vertex = vertices_[v];
+    vertex.seam = vertex.junction = vertex.open = 0;
+    vertex.kind = VertexKind::kFixed;
+    if (vertex.star_size == 0) {
+        vertex.kind = VertexKind::kDead;
+        return;
+    }
+    neighbours_of(*this, v, ring);
+    std::size_t special = 0;
+    const Neighbour* curve[2] = {};
+    for (const Neighbour& n : ring)
+        if (n.special()) {
+            if (special < 2) curve[special] = &n;
+            ++special;
+        }
+    const auto is_boundary = [](const Neighbour& n) { return n.out + n.in == 1; };
+    const auto boundaries = special == 0 ? 0 : std::count_if(ring.begin(), ring.end(), is_boundary);
+    vertex.open = boundaries != 0;
+    // A curve: two special edges of one kind.
+    const bool alike = special == 2 && curve[0]->out + curve[0]->in == curve[1]->out + curve[1]->in &&
+                       curve[0]->seam == curve[1]->seam;
+    if (special != 0 && !alike) {
+        // Several seams, or seams and a boundary, of an orderly fan.
+        const bool orderly = std::all_of(ring.begin(), ring.end(), [&](const Neighbour& n) {
+            return is_boundary(n) || (n.out == 1 && n.in == 1);
+        });
+        if (!has_wedges() || !orderly || (boundaries != 0 && boundaries != 2)) return;
+        vertex.junction = 1;
+    }
+    vertex.seam =
+        has_wedges() && std::any_of(ring.begin(), ring.end(), [](const Neighbour& n) { return n.seam; });
+    // The link must hang together: otherwise several fans meet in this one point.
+    roots.resize(ring.size());
+    std::iota(roots.begin(), roots.end(), 0u);
+    const bool sorted = vertex.star_size > kLargeStar;
+    const auto index_of = [&](std::uint32_t w) {
+        if (sorted)
+            return std::uint32_t(
+                std::lower_bound(ring.begin(), ring.end(), w,
+                                 [](const Neighbour& n, std::uint32_t x) { return n.vertex < x; }) -
+                ring.begin());
+        return std::uint32_t(
+            std::find_if(ring.begin(), ring.end(), [&](const Neighbour& n) { return n.vertex == w; }) -
+            ring.begin());
+    };
+    for (const std::uint32_t t : star(v)) {
+        std::uint32_t ends[2];
+        int n = 0;
+        for (const std::uint32_t w : triangles_[t])
+            if (w != v) ends[n++] = index_of(w);
+        roots[find_root(roots, ends[0])] = find_root(roots, ends[1]);
+    }
+    bool connected = true;
+    for (std::uint32_t i = 1; i < ring.size(); ++i) connected &= find_root(roots, i) == find_root(roots, 0);
+    if (connected) vertex.kind = special == 0 ? VertexKind::kInner : VertexKind::kCurve;
 }
 
 std::size_t StarMesh::fold(std::uint32_t child, std::uint32_t parent, std::span<const WedgePair> pairs,

@@ -31,6 +31,16 @@ inline void fetch_ahead(const void* line) {
     asm volatile("");
 }
 
+/// The vertices around one, each once, and how often its triangles run along the edge to it.
+struct Neighbour {
+    std::uint32_t vertex;
+    std::uint32_t out = 0, in = 0;  ///< Triangles with the edge centre->vertex, vertex->centre.
+    std::uint32_t here = 0, there = 0,
+                  group = 0;  ///< Wedges and group of the first of them, if there are any.
+    bool seam = false;        ///< Others have other ones.
+    bool special() const { return seam || out != 1 || in != 1; }
+};
+
 /// Vertices and triangles are numbered along a Morton curve, so that neighbours share cache lines.
 /// Positions stay the input's floats; working coordinates are exact differences to the centre, times a power
 /// of two.
@@ -87,6 +97,12 @@ class StarMesh {
     Vertex& vertex(std::uint32_t v) { return vertices_[v]; }
     VertexKind kind(std::uint32_t v) const { return vertices_[v].kind; }
     void fix(std::uint32_t v) { vertices_[v].kind = VertexKind::kFixed; }
+    /// Says anew what kind of vertex it is, after what was around it changed its topology.
+    struct ClassifyScratch {
+        std::vector<Neighbour> ring;
+        std::vector<std::uint32_t> roots;
+    };
+    void classify(std::uint32_t v, ClassifyScratch& scratch);
 
     /// Fetches ahead: the vertex; then the list of its star; then its triangles.
     void prefetch_vertex(std::uint32_t v) const { fetch_ahead(&vertices_[v]); }
@@ -147,16 +163,6 @@ class StarMesh {
     Double3 centre_;
     double scale_ = 1;
     std::uint32_t live_triangles_ = 0, live_vertices_ = 0;
-};
-
-/// The vertices around one, each once, and how often its triangles run along the edge to it.
-struct Neighbour {
-    std::uint32_t vertex;
-    std::uint32_t out = 0, in = 0;  ///< Triangles with the edge centre->vertex, vertex->centre.
-    std::uint32_t here = 0, there = 0,
-                  group = 0;  ///< Wedges and group of the first of them, if there are any.
-    bool seam = false;        ///< Others have other ones.
-    bool special() const { return seam || out != 1 || in != 1; }
 };
 
 /// Collects the neighbours of `v` into `out`: in order of first appearance, or by number if the star is

@@ -54,8 +54,10 @@ TriangleTree::TriangleTree(const Mesh& mesh) : mesh_(mesh) {
     }
     order_.resize(count);
     std::iota(order_.begin(), order_.end(), 0u);
-    nodes_.reserve(count + 1);
+    nodes_.reserve(count + 2);
+    // The second is none: children come in pairs that share a cache line.
     nodes_.push_back({{}, {}, 0, std::uint32_t(count)});
+    nodes_.push_back({});
     std::vector<Range> open{{0, 0}};
     while (!open.empty()) {
         const Range range = open.back();
@@ -143,7 +145,7 @@ std::uint32_t TriangleTree::split(const Node& node, const std::vector<Box>& boxe
     return at == node.first || at == node.first + node.count ? halves : at;
 }
 
-double TriangleTree::box_distance2(const Node& node, Double3 p) const {
+inline double TriangleTree::box_distance2(const Node& node, Double3 p) const {
     const std::array<double, 3> at{p.x, p.y, p.z};
     double sum = 0;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -153,13 +155,14 @@ double TriangleTree::box_distance2(const Node& node, Double3 p) const {
     return sum;
 }
 
-double TriangleTree::distance2(std::uint32_t slot, Double3 p) const {
+inline double TriangleTree::distance2(std::uint32_t slot, Double3 p) const {
     const Triangle& c = mesh_.triangles[order_[slot]];
     const Float3 t[3] = {mesh_.positions[c[0]], mesh_.positions[c[1]], mesh_.positions[c[2]]};
     return distance2_to_triangle(p, to_double(t[0]), to_double(t[1]), to_double(t[2]));
 }
 
-TriangleTree::Hit TriangleTree::closest(Double3 point, std::uint32_t guess, double enough2) const {
+TriangleTree::Hit TriangleTree::closest(Double3 point, std::uint32_t guess, double enough2,
+                                        double bound2) const {
     struct Entry {
         std::uint32_t node;
         double distance2;
@@ -167,7 +170,9 @@ TriangleTree::Hit TriangleTree::closest(Double3 point, std::uint32_t guess, doub
     Entry stack[kStack];
     int size = 0;
     std::uint32_t slot = guess < order_.size() ? guess : 0;
-    double best = distance2(slot, point);
+    double best = guess < order_.size() || !(bound2 < std::numeric_limits<double>::infinity())
+                      ? std::min(bound2, distance2(slot, point))
+                      : bound2;
     stack[size++] = {0, box_distance2(nodes_[0], point)};
     while (size && best > enough2) {
         const Entry entry = stack[--size];
@@ -188,6 +193,30 @@ TriangleTree::Hit TriangleTree::closest(Double3 point, std::uint32_t guess, doub
         if (near.distance2 < best) stack[size++] = near;
     }
     return {best, order_[slot], slot};
+}
+
+bool TriangleTree::overlapping(Double3 low, Double3 high, std::size_t most,
+                               std::vector<std::uint32_t>& out) const {
+    std::uint32_t stack[kStack];
+    int size = 0;
+    stack[size++] = 0;
+    const auto meets = [&](const Node& node) {
+        return double(node.low[0]) <= high.x && double(node.high[0]) >= low.x &&
+               double(node.low[1]) <= high.y && double(node.high[1]) >= low.y &&
+               double(node.low[2]) <= high.z && double(node.high[2]) >= low.z;
+    };
+    while (size) {
+        const Node& node = nodes_[stack[--size]];
+        if (!meets(node)) continue;
+        if (node.count == 0) {
+            stack[size++] = node.first;
+            stack[size++] = node.first + 1;
+            continue;
+        }
+        if (out.size() + node.count > most) return false;
+        out.insert(out.end(), order_.begin() + node.first, order_.begin() + node.first + node.count);
+    }
+    return true;
 }
 
 }  // namespace vsplit::bake

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "vec.hpp"
@@ -30,11 +31,17 @@ class TriangleTree {
 
     /// The closest triangle; of several at the same distance any, but always the same for the same guess. A
     /// guess (Hit::slot of a point nearby) only makes it faster. A triangle within `enough2` (squared) is
-    /// good enough: the first found is returned.
-    Hit closest(Double3 point, std::uint32_t guess = kNoGuess, double enough2 = 0) const;
+    /// good enough: the first found is returned. `bound2`, if the caller knows that something is that near,
+    /// spares looking farther away: it is the distance if no triangle is nearer, and the triangle then any.
+    Hit closest(Double3 point, std::uint32_t guess = kNoGuess, double enough2 = 0,
+                double bound2 = std::numeric_limits<double>::infinity()) const;
+
+    /// Appends the triangles in the leaves whose boxes meet the box from `low` to `high`; false if they are
+    /// more than `most`, and not all are there.
+    bool overlapping(Double3 low, Double3 high, std::size_t most, std::vector<std::uint32_t>& out) const;
 
   private:
-    struct Node {
+    struct alignas(32) Node {
         std::array<float, 3> low, high;
         std::uint32_t first = 0, count = 0;  ///< count 0: an inner node, children at first and first + 1.
     };

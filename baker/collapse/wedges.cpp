@@ -100,6 +100,16 @@ WedgeValues::WedgeValues(const Mesh& mesh, const AttributeWeights& weights) {
             std::copy_n(mesh.attributes[i].values.begin() + std::ptrdiff_t(components * v), components,
                         values_.begin() + std::ptrdiff_t(stride_ * v + columns_[i].begin));
     }
+    originals_ = values_;
+    places_ = mesh.positions;
+    samples_.resize(mesh.positions.size());
+    for (std::uint32_t v = 0; v < mesh.positions.size(); ++v) samples_[v][0] = v;
+    sample_counts_.assign(mesh.positions.size(), 1);
+}
+
+void WedgeValues::set_samples(std::uint32_t wedge, std::span<const std::uint32_t> samples) {
+    sample_counts_[wedge] = std::uint8_t(std::min(samples.size(), kSamples));
+    std::copy_n(samples.begin(), sample_counts_[wedge], samples_[wedge].begin());
 }
 
 void WedgeValues::mix(const Blend& blend, std::span<float> out) const {
@@ -130,6 +140,20 @@ void WedgeValues::mix(const Blend& blend, std::span<float> out) const {
         }
     }
     mix_joints(blend, out);
+}
+
+void WedgeValues::take_linear(std::span<const float> from, std::span<float> out) const {
+    for (const Column& column : columns_) {
+        if (column.semantic == Semantic::kJoints || column.semantic == Semantic::kJointWeights) continue;
+        const bool is_tangent = column.semantic == Semantic::kTangent;
+        const std::size_t end = column.begin + (is_tangent ? 3 : column.components);
+        bool changes = false;
+        for (std::size_t i = column.begin; i < end; ++i) {
+            changes |= out[i] != from[i];
+            out[i] = from[i];
+        }
+        if (changes && (column.semantic == Semantic::kNormal || is_tangent)) normalise(&out[column.begin]);
+    }
 }
 
 void WedgeValues::mix_joints(const Blend& blend, std::span<float> out) const {
@@ -288,116 +312,6 @@ void WedgeStar::gather(const StarMesh& mesh, const EdgeStar& star, std::uint32_t
     std::erase_if(transferred, [&](std::uint32_t w) {
         return std::any_of(pairs.begin(), pairs.end(), [&](const WedgePair& p) { return p.child == w; });
     });
-}
-
-namespace {
-
-/// The nearest point of triangles, as shares of its corners. Inside a triangle exact, beside it near enough.
-struct Nearest {
-    double distance2 = std::numeric_limits<double>::infinity();
-    std::array<double, 3> shares{1, 0, 0};
-    Triangle corners{};
-
-    void offer(Double3 p, Double3 a, Double3 b, Double3 c, const Triangle& triangle) {
-        const Double3 ab = b - a, ac = c - a, ap = p - a;
-        const double bb = length2(ab), bc = dot(ab, ac), cc = length2(ac), pb = dot(ap, ab), pc = dot(ap, ac),
-                     determinant = bb * cc - bc * bc;
-        double x = 0, y = 0;
-        if (determinant > 1e-12 * bb * cc) {
-            x = std::max(0.0, (cc * pb - bc * pc) / determinant);
-            y = std::max(0.0, (bb * pc - bc * pb) / determinant);
-            if (const double sum = x + y; sum > 1) {
-                x /= sum;
-                y = 1 - x;
-            }
-        }
-        const double d = length2(ap - ab * x - ac * y);
-        if (d >= distance2) return;
-        distance2 = d;
-        shares = {1 - x - y, x, y};
-        corners = triangle;
-    }
-};
-
-/// The wedges at a triangle's corners, from one of its vertices on.
-Triangle corners_from(const StarMesh& mesh, std::uint32_t t, std::uint32_t vertex) {
-    const Triangle &c = mesh.triangle(t), &wedges = mesh.corners(t);
-    const std::size_t k = c[0] == vertex ? 0 : c[1] == vertex ? 1 : 2;
-    return {wedges[k], wedges[(k + 1) % 3], wedges[(k + 2) % 3]};
-}
-
-}  // namespace
-
-void mix_at(const StarMesh& mesh, const EdgeStar& star, const WedgeStar& wedges, const WedgePair& pair,
-            const WedgeValues& values, Double3 place, std::span<float> out) {
-    const auto copy = [&](std::uint32_t wedge) {
-        const auto from = values.of(wedge);
-        std::copy(from.begin(), from.end(), out.begin());
-    };
-    const bool first_stays = wedges.parent == star.u;
-    const auto is_at = [&](Double3 p) { return p.x == place.x && p.y == place.y && p.z == place.z; };
-    if (is_at(first_stays ? star.pu : star.pv)) return copy(pair.parent);
-    if (is_at(first_stays ? star.pv : star.pu)) return copy(pair.child);
-    const std::uint32_t at_first = first_stays ? pair.parent : pair.child,
-                        at_second = first_stays ? pair.child : pair.parent;
-    Nearest nearest;
-    for (std::size_t i = 0; i < star.size; ++i) {
-        const bool first = i < star.first_size;
-        const Triangle corners = corners_from(mesh, star.triangles[i], first ? star.u : star.v);
-        if (corners[0] != (first ? at_first : at_second)) continue;
-        const EdgeStar::Wing wing = star.wing(i);
-        nearest.offer(place, first ? star.pu : star.pv, wing.pa, wing.pb, corners);
-    }
-    for (std::size_t i = 0; i < star.opposite.size(); ++i) {
-        const Triangle corners = corners_from(mesh, star.opposite_triangles[i], star.u);
-        if (corners[0] != at_first) continue;
-        const bool forward = star.forward[i] != 0;
-        nearest.offer(place, star.pu, forward ? star.pv : star.opposite_places[i],
-                      forward ? star.opposite_places[i] : star.pv, corners);
-    }
-    if (std::isinf(nearest.distance2)) return copy(pair.parent);
-    values.mix({{values.of(nearest.corners[0]), values.of(nearest.corners[1]), values.of(nearest.corners[2])},
-                nearest.shares},
-               out);
-}
-
-double attribute_cost(const StarMesh& mesh, const EdgeStar& star, const WedgeStar& wedges,
-                      const WedgeValues& values, Double3 place) {
-    const double area = double(mesh.vertex(star.u).size) + double(mesh.vertex(star.v).size);
-    const double extent = std::sqrt(area / 6);
-    const bool first_stays = wedges.parent == star.u;
-    const Double3 parent_place = first_stays ? star.pu : star.pv,
-                  child_place = first_stays ? star.pv : star.pu;
-    double most = 0;
-    // What `own` had at `p`, against what the new triangles have that keep one of two wedges at their tip,
-    // whose values become `tip`.
-    const auto compare = [&](std::uint32_t own, Double3 p, std::uint32_t a, std::uint32_t b,
-                             std::span<const float> tip) {
-        Nearest nearest;
-        for (std::size_t i = 0; i < star.size; ++i) {
-            const Triangle corners =
-                corners_from(mesh, star.triangles[i], i < star.first_size ? star.u : star.v);
-            if (corners[0] != a && corners[0] != b) continue;
-            const EdgeStar::Wing wing = star.wing(i);
-            nearest.offer(p, place, wing.pa, wing.pb, corners);
-        }
-        if (std::isinf(nearest.distance2)) return;  // This side of the seam goes.
-        most = std::max(
-            most, values.apart2(
-                      values.of(own),
-                      {{tip, values.of(nearest.corners[1]), values.of(nearest.corners[2])}, nearest.shares},
-                      extent, mesh.scale()));
-    };
-    thread_local std::vector<float> mixed;
-    mixed.resize(values.stride());
-    for (const WedgePair& pair : wedges.pairs) {
-        mix_at(mesh, star, wedges, pair, values, place, mixed);
-        compare(pair.child, child_place, pair.child, pair.parent, mixed);
-        compare(pair.parent, parent_place, pair.child, pair.parent, mixed);
-    }
-    for (const std::uint32_t wedge : wedges.transferred)
-        compare(wedge, child_place, wedge, wedge, values.of(wedge));
-    return std::pow(area, 1.5) / std::sqrt(6.0) * most;
 }
 
 }  // namespace vsplit::bake

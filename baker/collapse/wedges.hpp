@@ -36,6 +36,8 @@ class WedgeValues {
     };
     /// Into `out`: unit vectors stay so; of joints, the strongest of all stay. A share of 1 copies the bits.
     void mix(const Blend& blend, std::span<float> out) const;
+    /// Copies what is linear, that is all but joints, their weights and handedness; unit vectors stay so.
+    void take_linear(std::span<const float> from, std::span<float> out) const;
     /// How far `old` is from a blend, as a squared length: see AttributeWeights. `extent` is the size of the
     /// triangles around, working units, of which one object unit makes `scale`.
     double apart2(std::span<const float> old, const Blend& blend, double extent, double scale) const;
@@ -49,12 +51,27 @@ class WedgeValues {
     };
     const std::vector<Column>& columns() const { return columns_; }
 
+    /// Vertices of the input, for which a wedge now stands: at most kSamples, those that it shows worst.
+    static constexpr std::size_t kSamples = 6;
+    std::span<const std::uint32_t> samples(std::uint32_t wedge) const {
+        return {samples_[wedge].data(), sample_counts_[wedge]};
+    }
+    void set_samples(std::uint32_t wedge, std::span<const std::uint32_t> samples);
+    /// What the input has there.
+    const Float3& sample_place(std::uint32_t sample) const { return places_[sample]; }
+    std::span<const float> sample_values(std::uint32_t sample) const {
+        return {originals_.data() + std::size_t{stride_} * sample, stride_};
+    }
+
   private:
     void mix_joints(const Blend& blend, std::span<float> out) const;
 
     std::vector<Column> columns_;
     std::uint32_t stride_ = 0;
-    std::vector<float> values_;
+    std::vector<float> values_, originals_;
+    std::vector<Float3> places_;
+    std::vector<std::array<std::uint32_t, kSamples>> samples_;
+    std::vector<std::uint8_t> sample_counts_;
 };
 
 /// A mesh of points, and the wedges at its corners.
@@ -82,15 +99,5 @@ struct WedgeStar {
     /// transferred; a wedge that stays may have several.
     void gather(const StarMesh& mesh, const EdgeStar& star, std::uint32_t parent);
 };
-
-/// The values that a pair's wedge has at `place` once it is all that is left of the two, into `out`: what the
-/// nearest of the old triangles on its side of seams has there; its own if it stays where it is.
-void mix_at(const StarMesh& mesh, const EdgeStar& star, const WedgeStar& wedges, const WedgePair& pair,
-            const WedgeValues& values, Double3 place, std::span<float> out);
-
-/// What the collapse does to attributes, as a cost: the triangles' area^1.5 around the edge times the squared
-/// length that WedgeValues::apart2 says, of both ends' old values against the new triangles'.
-double attribute_cost(const StarMesh& mesh, const EdgeStar& star, const WedgeStar& wedges,
-                      const WedgeValues& values, Double3 place);
 
 }  // namespace vsplit::bake

@@ -192,7 +192,8 @@ Result<std::vector<KeepResult>> find_weights(const Mesh& mesh, Marks& marks, std
         if (!moved) break;
     }
     for (std::size_t i = 0; i < wishes.size(); ++i)
-        if (std::abs(results[i].share - wishes[i].share) > 0.01)
+        if (std::abs(results[i].share - wishes[i].share) >
+            std::max(0.01, 1.0 / double(search.size_of(numbers[i]))))
             return refuse("no weight keeps " + percent(wishes[i].share) + " of region " + wishes[i].region +
                           " at " + percent(wishes[i].ratio) + " of the triangles: the nearest is " +
                           percent(results[i].share));

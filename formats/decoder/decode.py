@@ -116,11 +116,6 @@ def _power(i):
 
 
 POWERS = [_power(i) for i in range(256)]
-ARC_COSINES = [
-    1024, 942, 908, 882, 859, 839, 821, 804, 788, 773, 759, 745, 732, 719, 707, 695, 683, 671, 660, 648, 637,
-    626, 616, 605, 594, 584, 573, 563, 553, 543, 532, 522, 512, 502, 492, 481, 471, 461, 451, 440, 430, 419,
-    408, 398, 387, 376, 364, 353, 341, 329, 317, 305, 292, 279, 265, 251, 236, 220, 203, 185, 165, 142, 116, 82,
-    0]
 
 
 def half_octave(x):
@@ -136,19 +131,6 @@ def mean16(total, n):
 
 def quotient(a, b):
     return (2 * a + b) // (2 * b)
-
-
-def angle_between(product, log_a, log_b):
-    size = abs(product)
-    log = -4096 if size == 0 else log2(size) - (log_a + log_b) // 2
-    below = -log if log < 0 else 0
-    whole = (below + 255) >> 8
-    cosine = 0 if whole > 15 else (POWERS[256 * whole - below] >> whole) >> 5
-    at = 1024 - cosine if product < 0 else 1024 + cosine
-    i, rest = at >> 5, at & 31
-    if i >= 64:
-        return 0
-    return ARC_COSINES[i] + ((ARC_COSINES[i + 1] - ARC_COSINES[i]) * rest >> 5)
 
 
 # ---- The range coder and its models
@@ -455,7 +437,6 @@ class Cuts:
     def __init__(self):
         self.edge, self.chord = [Role() for _ in range(72)], [Role() for _ in range(10)]
         self.lengths = [[[1] * 17 for _ in range(17)] for _ in range(3)]
-        self.shares = [[[1] * 32 for _ in range(17)] for _ in range(2)]
         self.both, self.last = [Bit() for _ in range(8)], Bit()
 
     def decode(self, coder, live, star):
@@ -464,14 +445,6 @@ class Cuts:
         spoke = [[live.at[v][a] - live.at[star.centre][a] for a in range(3)] for v in ring]
         square = [sum(x * x for x in s) + 1 for s in spoke]
         length_log = [log2(s) for s in square]
-        angle = [0]
-        for i in range(n):
-            j = (i + 1) % count
-            angle.append(angle[-1] + angle_between(sum(a * b for a, b in zip(spoke[i], spoke[j])), length_log[i],
-                                                   length_log[j]))
-        whole = angle[n]
-        if closed:
-            angle += [whole + a for a in angle[1:]]
         mean = log2(sum(square)) - log2(count)
         edge, chord = [], []
         for i, v in enumerate(ring):
@@ -490,8 +463,6 @@ class Cuts:
         family = 0 if closed else 1 if first_wing and last_wing else 2
         child = lambda i: 9 * self.edge[edge[i % count]].child + 4 * self.chord[chord[i % count]].child
         wing = lambda i: 9 * self.edge[edge[i % count]].wing + 4 * self.chord[chord[i % count]].wing
-        scale = (32 << 16) // max(whole, 1)
-        share = lambda begin, length: min((angle[begin + length] - angle[begin]) * scale >> 16, 31)
         lengths = self.lengths[family][min(n, 16)]
         scaled = lambda length: length if n <= 16 else length * 16 // n
         runs, scores = [], []
@@ -500,21 +471,18 @@ class Cuts:
                 begins = [count - 1 - length if first_wing else 0]
             else:
                 begins = range(n if closed else n + 1 - length)
-            rivals = [share(b, length) for b in begins]
-            shares = self.shares[0 if closed else 1][min(length, 16)]
-            for begin, mine in zip(begins, rivals):
+            for begin in begins:
                 end = begin + length
-                score = 16 * log2(lengths[scaled(length)]) - 4 * log2(sum(shares))
-                score += 4 * (log2(shares[mine]) - log2(rivals.count(mine)))
+                score = 16 * log2(lengths[scaled(length)])
                 score += (wing(begin) if first_wing else 0) + (wing(end) if last_wing else 0)
                 score += sum(child(i) for i in range(begin + 1 if first_wing else begin, end if last_wing else end + 1))
                 runs.append((begin, length))
                 scores.append(score)
         weights = []
         for score in scores:
-            below = (max(scores) - score) >> 4
-            octaves = (below + 255) >> 8
-            weights.append(1 if octaves > 12 else max(1, POWERS[256 * octaves - below] >> (3 + octaves)))
+            below = min((max(scores) - score) >> 7, 384)
+            octaves = (below + 31) // 32
+            weights.append(max(1, POWERS[8 * (32 * octaves - below)] >> (3 + octaves)))
         begin, length = runs[coder.pick(weights)]
 
         for i in range(count):
@@ -528,10 +496,6 @@ class Cuts:
                 role = 0
             self.edge[edge[i]].saw(role)
             self.chord[chord[i]].saw(role)
-        shares = self.shares[0 if closed else 1][min(length, 16)]
-        shares[share(begin, length)] += 8
-        if sum(shares) > 4000:
-            shares[:] = [c >> 1 | 1 for c in shares]
         lengths[scaled(length)] += 4
         if lengths[scaled(length)] > 4000:
             lengths[:] = [c >> 1 | 1 for c in lengths]
@@ -552,6 +516,11 @@ def departure(difference, scale):
     return 0 if now + 2 < scale else 2 if now > scale + 1 else 1
 
 
+def rough_shift(scale, bent):
+    digits = (scale - 1) // 2 if scale > 0 else 0
+    return 0 if bent == 2 else max(0, digits - (4 if bent == 0 else 6))
+
+
 class Places:
     def __init__(self, weights):
         self.weights = weights
@@ -560,7 +529,7 @@ class Places:
         self.third = [Residual(56, 4) for _ in range(3)]
         self.free = Residual(1, 1)
 
-    def decode(self, coder, live, kind, parent, ring, open_ring, child=None):
+    def decode(self, coder, live, kind, parent, ring, open_ring, rough, child=None):
         origin = live.at[parent]
         minus = lambda p: [p[a] - origin[a] for a in range(3)]
         size = len(ring)
@@ -610,10 +579,13 @@ class Places:
         mean_scale = (scale_a + scale_b) // 2
         bent = 0 if flatness + 6 < mean_scale else 1 if flatness + 2 < mean_scale else 2
         at_a, at_b = (within(origin[x] + ((along[x] + 8) >> 4)) for x in (a, b))
-        out[a] = within(at_a + self.first[kind].decode(coder, scale_a, bent))
-        missed_a = departure(out[a] - at_a, scale_a)
-        out[b] = within(at_b + self.second[kind].decode(coder, scale_b, missed_a))
-        missed = max(missed_a, departure(out[b] - at_b, scale_b))
+        shift_a, shift_b = (rough_shift(x, bent) if rough else 0 for x in (scale_a, scale_b))
+        step_a = self.first[kind].decode(coder, scale_a - 2 * shift_a, bent)
+        out[a] = within(at_a + (step_a << shift_a))
+        missed_a = departure(step_a, scale_a - 2 * shift_a)
+        step_b = self.second[kind].decode(coder, scale_b - 2 * shift_b, missed_a)
+        out[b] = within(at_b + (step_b << shift_b))
+        missed = max(missed_a, departure(step_b, scale_b - 2 * shift_b))
         slide = 0
         if normal[c] != 0:
             side = sum((16 * (out[x] - origin[x]) - across[x]) * normal[x] for x in (a, b))
@@ -679,6 +651,7 @@ class Decoder:
 
         bits = lambda n: [Bit() for _ in range(n)]
         self.one_birth, self.regular, self.place_moves, self.same_move, self.same_place = (bits(2) for _ in range(5))
+        self.rough = bits(2)
         self.implied, self.group_stays, self.in_mask, self.moved, self.twin_moved = \
             Bit(), Bit(), Bit(), bits(3), bits(2)
         (self.births, self.twin, self.far, self.more_moves, self.moved_far, self.extra, self.corner_birth,
@@ -795,8 +768,9 @@ class Decoder:
                 place, finer = births[0][1], births[0][2]
             else:
                 if run:
+                    rough = moving and not self.file.lossless and coder.bit(self.rough[0])
                     place = self.places.decode(coder, live, 1 if moving else 0, parent, child_ring,
-                                               not (run[2] and run[3]))
+                                               not (run[2] and run[3]), rough)
                 else:
                     place = self.places.decode_free(coder, live.at[parent] if parent != NONE else self.last_place)
                 finer = self.decode_finer(coder)
@@ -885,7 +859,8 @@ class Decoder:
             now, finer = moves[0][1], moves[0][2]
         elif coder.bit(self.place_moves[guided]):
             if guided:
-                now = self.places.decode(coder, self.live, 2, vertex, guide[0], guide[1], guide[2])
+                rough = not self.file.lossless and coder.bit(self.rough[1])
+                now = self.places.decode(coder, self.live, 2, vertex, guide[0], guide[1], rough, guide[2])
             else:
                 now = self.places.decode_free(coder, now)
             finer = self.decode_finer(coder)

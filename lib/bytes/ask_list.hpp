@@ -38,6 +38,13 @@ class AskList {
         words_[v / 64] &= ~(std::uint64_t{1} << (v % 64));
         return cursor_ = v;
     }
+    /// Which of the 64 vertices after this one are to be asked.
+    std::uint64_t after(std::uint32_t vertex) const {
+        const std::size_t from = std::size_t{vertex} + 1, w = from / 64, shift = from % 64;
+        if (w >= words_.size()) return 0;
+        const std::uint64_t low = words_[w] >> shift;
+        return shift == 0 || w + 1 == words_.size() ? low : low | words_[w + 1] << (64 - shift);
+    }
     /// How often the sweep went back to the beginning.
     std::uint32_t round() const { return round_; }
 

@@ -14,11 +14,10 @@ std::uint32_t ratio_class(std::int32_t log) {
 }  // namespace
 
 void CutModel::Role::saw(unsigned role) {
-    constexpr std::uint16_t kMost = 1000;
-    if ((count[role] = static_cast<std::uint16_t>(count[role] + 4)) > kMost)
+    if ((count[role] = static_cast<std::uint16_t>(count[role] + 4)) > kMostSeen)
         for (auto& c : count) c = static_cast<std::uint16_t>((c >> 1) | 1);
-    wing = log2_fixed(count[1]) - log2_fixed(count[0]);
-    child = log2_fixed(count[2]) - log2_fixed(count[0]);
+    wing = log2_count(count[1]) - log2_count(count[0]);
+    child = log2_count(count[2]) - log2_count(count[0]);
 }
 
 CutModel::CutModel() = default;
@@ -39,20 +38,11 @@ void CutModel::classify(const LiveStars& mesh, const Star& star) {
         sum += square;
         length[i] = log2_fixed(square);
     }
-    angle_[0] = 0;
-    for (std::uint32_t i = 0; i < star.size; ++i) {
-        const std::uint32_t j = i + 1 == count ? 0 : i + 1;
-        const std::int64_t product =
-            spoke[i][0] * spoke[j][0] + spoke[i][1] * spoke[j][1] + spoke[i][2] * spoke[j][2];
-        angle_[i + 1] = angle_[i] + angle_between(product, length[i], length[j]);
-    }
-    if (star.closed)
-        for (std::uint32_t i = 1; i <= star.size; ++i) angle_[star.size + i] = angle_[star.size] + angle_[i];
     const std::int32_t mean = log2_fixed(sum) - log2_fixed(count);
     for (std::uint32_t i = 0; i < count; ++i) {
         const std::uint32_t valence = std::clamp<std::uint32_t>(mesh.vertices[star.ring[i]].star, 2, 9) - 2;
         const std::int32_t log = length[i];
-        edge_kind_[i] = 9 * valence + ratio_class(log - mean);
+        edge_kind_[i] = static_cast<std::uint8_t>(9 * valence + ratio_class(log - mean));
         if (!star.closed && (i == 0 || i + 1 == count)) {
             chord_kind_[i] = 9;
         } else {
@@ -61,7 +51,7 @@ void CutModel::classify(const LiveStars& mesh, const Star& star) {
             std::uint64_t chord = 1;
             for (std::size_t k = 0; k < 3; ++k)
                 chord += static_cast<std::uint64_t>((after[k] - before[k]) * (after[k] - before[k]));
-            chord_kind_[i] = ratio_class(log2_fixed(chord) - log - 256);
+            chord_kind_[i] = static_cast<std::uint8_t>(ratio_class(log2_fixed(chord) - log - 256));
         }
     }
 }
@@ -76,19 +66,6 @@ void CutModel::learn(const Star& star, const Cut& cut) {
         if (!star.closed && i < cut.begin) role = 0;
         by_edge_[edge_kind_[i]].saw(role);
         by_chord_[chord_kind_[i]].saw(role);
-    }
-    Shares& shares = shares_[!star.closed][std::min<std::size_t>(cut.length, kLongest)];
-    const std::size_t at =
-        share_class(angle_[cut.begin + cut.length] - angle_[cut.begin], share_scale(angle_[n]));
-    shares.count[at] = static_cast<std::uint16_t>(shares.count[at] + 8);
-    shares.log[at] = static_cast<std::int16_t>(log2_fixed(shares.count[at]));
-    shares.sum += 8;
-    if (shares.sum > 4000) {
-        shares.sum = 0;
-        for (std::size_t i = 0; i < kShares; ++i) {
-            shares.sum += shares.count[i] = static_cast<std::uint16_t>((shares.count[i] >> 1) | 1);
-            shares.log[i] = static_cast<std::int16_t>(log2_fixed(shares.count[i]));
-        }
     }
     const std::size_t family = star.closed ? 0 : cut.first_wing && cut.last_wing ? 1 : 2;
     auto& row = lengths_[family].count[std::min<std::size_t>(n, kLongest)];

@@ -64,32 +64,6 @@ constexpr std::int64_t mean16(std::int64_t sum, std::uint32_t n) {
     return (sum * kReciprocals[n]) >> 12;
 }
 
-/// The angle whose cosine is (i - 32) / 32, in 1/1024 of half a turn.
-inline constexpr std::array<std::int16_t, 65> kArcCosines = {
-    1024, 942, 908, 882, 859, 839, 821, 804, 788, 773, 759, 745, 732, 719, 707, 695, 683,
-    671,  660, 648, 637, 626, 616, 605, 594, 584, 573, 563, 553, 543, 532, 522, 512, 502,
-    492,  481, 471, 461, 451, 440, 430, 419, 408, 398, 387, 376, 364, 353, 341, 329, 317,
-    305,  292, 279, 265, 251, 236, 220, 203, 185, 165, 142, 116, 82,  0};
-
-/// The angle between two vectors of this product, whose squared lengths have these logarithms, in 1/1024 of
-/// half a turn.
-constexpr std::int32_t angle_between(std::int64_t product, std::int32_t log_a, std::int32_t log_b) {
-    const std::uint64_t size = static_cast<std::uint64_t>(product < 0 ? -product : product);
-    // |cosine| = 2^log
-    const std::int32_t log = size == 0 ? -4096 : log2_fixed(size) - (log_a + log_b) / 2;
-    const std::int32_t below = log < 0 ? -log : 0, whole = (below + 255) >> 8;
-    const std::int32_t cosine =
-        whole > 15 ? 0 : (kPowers[static_cast<std::size_t>(256 * whole - below)] >> whole) >> 5;
-    const std::int32_t at =
-        product < 0 ? 32 * 32 - cosine : 32 * 32 + cosine;  // in 1/32 of the table's steps
-    const std::int32_t i = at >> 5, rest = at & 31;
-    if (i >= 64) return 0;
-    return kArcCosines[static_cast<std::size_t>(i)] +
-           ((kArcCosines[static_cast<std::size_t>(i) + 1] - kArcCosines[static_cast<std::size_t>(i)]) *
-                rest >>
-            5);
-}
-
 /// 0 for 0, then two classes an octave: 1 for 1, 3 for 2, 4 for 3, 5 for 4 and 5, 6 for 6 and 7, ...
 constexpr std::uint32_t half_octave(std::uint64_t x) {
     if (x < 2) return static_cast<std::uint32_t>(x);

@@ -59,7 +59,7 @@ class PlaceModel {
                            const Lattice3& child) const;
 
     template <class Coder>
-    Lattice3 code(Coder& coder, PlaceGuides& guides, const Lattice3& place);
+    Lattice3 code(Coder& coder, PlaceGuides& guides, const Lattice3& place, bool rough);
     /// Without any guide: the difference to a place nearby.
     template <class Coder>
     Lattice3 code_free(Coder& coder, const Lattice3& near, const Lattice3& place);
@@ -89,8 +89,16 @@ inline std::uint32_t departure_class(std::int32_t difference, std::uint32_t scal
     return class_now + 2 < scale ? 0 : class_now > scale + 1 ? 2 : 1;
 }
 
+/// By how many digits a rough place is coarser along the surface: to an eighth of the ring's extent where it
+/// is flat, to a thirty-second where it bends, not at all where it is creased.
+inline std::uint32_t rough_shift(std::uint32_t scale, std::uint32_t bent) {
+    const std::uint32_t digits = scale > 0 ? (scale - 1) / 2 : 0, keep = bent == 0 ? 4u : 6u;
+    return bent == 2 || digits <= keep ? 0 : digits - keep;
+}
+
 template <class Coder>
-Lattice3 PlaceModel::code(Coder& coder, PlaceGuides& g, const Lattice3& place) {
+Lattice3 PlaceModel::code(Coder& coder, PlaceGuides& g, const Lattice3& place, bool rough) {
+    if (!Coder::kWrites && !Coder::kDecodes && !rough) return place;
     const std::size_t c = g.across, a = c == 0 ? 1 : 0, b = c == 2 ? 1 : 2,
                       kind = static_cast<std::size_t>(g.kind);
     const auto along = mix(g, 0), across = mix(g, 1);
@@ -102,20 +110,34 @@ Lattice3 PlaceModel::code(Coder& coder, PlaceGuides& g, const Lattice3& place) {
     const std::uint32_t flatness = std::min(half_octave(g.roughness), 55u);
     const std::uint32_t mean_scale = (scale_a + scale_b) / 2;
     const std::uint32_t bent = flatness + 6 < mean_scale ? 0 : flatness + 2 < mean_scale ? 1 : 2;
+    const std::uint32_t shift_a = rough ? rough_shift(scale_a, bent) : 0,
+                        shift_b = rough ? rough_shift(scale_b, bent) : 0;
+    const auto in_steps = [](std::int32_t difference, std::uint32_t shift) {
+        return shift == 0 ? difference : (difference + (1 << (shift - 1))) >> shift;
+    };
     const std::int32_t at_a = predicted(a), at_b = predicted(b);
-    out[a] = within_reach(std::int64_t{at_a} + first_[kind].code(coder, scale_a, bent, place[a] - at_a));
-    const std::uint32_t missed_a = departure_class(out[a] - at_a, scale_a);
-    out[b] = within_reach(std::int64_t{at_b} + second_[kind].code(coder, scale_b, missed_a, place[b] - at_b));
-    const std::uint32_t missed = std::max(missed_a, departure_class(out[b] - at_b, scale_b));
+    const std::int32_t step_a =
+        first_[kind].code(coder, scale_a - 2 * shift_a, bent, in_steps(place[a] - at_a, shift_a));
+    out[a] = within_reach(at_a + std::int64_t{step_a} * (1 << shift_a));
+    const std::uint32_t missed_a = departure_class(step_a, scale_a - 2 * shift_a);
+    const std::int32_t step_b =
+        second_[kind].code(coder, scale_b - 2 * shift_b, missed_a, in_steps(place[b] - at_b, shift_b));
+    out[b] = within_reach(at_b + std::int64_t{step_b} * (1 << shift_b));
+    const std::uint32_t missed = std::max(missed_a, departure_class(step_b, scale_b - 2 * shift_b));
     // Along the plane of the ring, from the point that the second row of weights predicts.
-    std::int64_t slide = 0;
-    if (g.normal[c] != 0) {
-        const std::int64_t side = (16 * (std::int64_t{out[a]} - g.from[a]) - across[a]) * g.normal[a] +
-                                  (16 * (std::int64_t{out[b]} - g.from[b]) - across[b]) * g.normal[b];
-        slide = g.normal[c] > 0 ? rounded_quotient(side, g.normal[c]) : rounded_quotient(-side, -g.normal[c]);
-    }
-    const std::int32_t at_c = within_reach(g.from[c] + ((across[c] - slide + 8) >> 4));
-    out[c] = within_reach(std::int64_t{at_c} + third_[kind].code(coder, flatness, missed, place[c] - at_c));
+    const auto slide = [&](std::int64_t along_a, std::int64_t along_b) -> std::int64_t {
+        if (g.normal[c] == 0) return 0;
+        const std::int64_t side = along_a * g.normal[a] + along_b * g.normal[b];
+        return g.normal[c] > 0 ? rounded_quotient(side, g.normal[c]) : rounded_quotient(-side, -g.normal[c]);
+    };
+    const std::int64_t slid = slide(16 * (std::int64_t{out[a]} - g.from[a]) - across[a],
+                                    16 * (std::int64_t{out[b]} - g.from[b]) - across[b]);
+    const std::int32_t at_c = within_reach(g.from[c] + ((across[c] - slid + 8) >> 4));
+    std::int64_t wanted_c = place[c];
+    if (!Coder::kDecodes && rough)  // as high over the plane as the place asked for
+        wanted_c -= slide(std::int64_t{out[a]} - place[a], std::int64_t{out[b]} - place[b]);
+    out[c] = within_reach(std::int64_t{at_c} +
+                          third_[kind].code(coder, flatness, missed, within_reach(wanted_c) - at_c));
     return out;
 }
 

@@ -13,6 +13,13 @@
 #include <span>
 #include <vector>
 
+/// The coder's smallest steps: compilers that leave them out of line lose a fifth of the time.
+#if defined(__GNUC__) || defined(__clang__)
+#define VSPLIT_INLINE [[gnu::always_inline]] inline
+#else
+#define VSPLIT_INLINE inline
+#endif
+
 namespace vsplit {
 
 /// The rate at which a model that has seen n bits learns from the next: about 1 / (n + 1.5), in 1/65536.
@@ -34,7 +41,7 @@ class BitModel {
 
     /// In 1/65536, kept where neither bit is impossible.
     std::uint32_t one() const { return one_; }
-    void learn(bool bit) {
+    VSPLIT_INLINE void learn(bool bit) {
         const std::uint32_t rate = kLearningRates[seen_];
         if (seen_ + 1u < kFastestRates) ++seen_;
         if (bit)
@@ -50,15 +57,15 @@ class BitModel {
 
 class RangeEncoder {
   public:
-    static constexpr bool kDecodes = false;
+    static constexpr bool kDecodes = false, kWrites = true;
 
-    bool bit(BitModel& model, bool value) {
+    VSPLIT_INLINE bool bit(BitModel& model, bool value) {
         weighed(model.one(), value);
         model.learn(value);
         return value;
     }
     /// A bit that is 1 with this probability in 1/65536, 1 to 65535.
-    bool weighed(std::uint32_t one, bool value) {
+    VSPLIT_INLINE bool weighed(std::uint32_t one, bool value) {
         const std::uint32_t ones = static_cast<std::uint32_t>((std::uint64_t{range_} * one) >> 16);
         if (value) {
             range_ = ones;
@@ -105,7 +112,7 @@ class RangeEncoder {
         low_ += std::uint64_t{range_} * value;
         normalise();
     }
-    void normalise() {
+    VSPLIT_INLINE void normalise() {
         while (range_ < (1u << 24)) {
             range_ <<= 8;
             shift();
@@ -136,7 +143,7 @@ class RangeEncoder {
 
 /// Takes the encoder's part and writes nothing, for a pass that only looks.
 struct NoCoder {
-    static constexpr bool kDecodes = false;
+    static constexpr bool kDecodes = false, kWrites = false;
     bool bit(BitModel&, bool value) { return value; }
     bool weighed(std::uint32_t, bool value) { return value; }
     std::uint32_t raw(std::uint32_t, std::uint32_t value) { return value; }
@@ -147,19 +154,19 @@ struct NoCoder {
 /// Safe for any bytes: behind their end follow zeros, and overrun() says so.
 class RangeDecoder {
   public:
-    static constexpr bool kDecodes = true;
+    static constexpr bool kDecodes = true, kWrites = false;
 
     RangeDecoder() = default;
     explicit RangeDecoder(std::span<const std::byte> bytes) : bytes_(bytes) {
         for (int i = 0; i < 4; ++i) code_ = (code_ << 8) | next();
     }
 
-    bool bit(BitModel& model, bool = false) {
+    VSPLIT_INLINE bool bit(BitModel& model, bool = false) {
         const bool value = weighed(model.one());
         model.learn(value);
         return value;
     }
-    bool weighed(std::uint32_t one, bool = false) {
+    VSPLIT_INLINE bool weighed(std::uint32_t one, bool = false) {
         const std::uint32_t ones = static_cast<std::uint32_t>((std::uint64_t{range_} * one) >> 16);
         const bool value = code_ < ones;
         if (value) {
@@ -172,7 +179,7 @@ class RangeDecoder {
         return value;
     }
 
-    std::uint32_t raw(std::uint32_t count, std::uint32_t = 0) {
+    VSPLIT_INLINE std::uint32_t raw(std::uint32_t count, std::uint32_t = 0) {
         std::uint32_t value = 0;
         for (; count > 16; count -= 16) value = (value << 16) | raw_few(16);
         if (count > 0) value = (value << count) | raw_few(count);
@@ -197,7 +204,7 @@ class RangeDecoder {
     bool overrun() const { return taken_ > bytes_.size(); }
 
   private:
-    std::uint32_t raw_few(std::uint32_t count) {
+    VSPLIT_INLINE std::uint32_t raw_few(std::uint32_t count) {
         range_ >>= count;
         std::uint32_t value = code_ / range_;
         if (value >> count) value = (1u << count) - 1;  // only a forged stream comes here
@@ -210,7 +217,7 @@ class RangeDecoder {
         const std::size_t at = taken_++;
         return at < bytes_.size() ? static_cast<std::uint32_t>(bytes_[at]) : 0;
     }
-    void normalise() {
+    VSPLIT_INLINE void normalise() {
         while (range_ < (1u << 24)) {
             range_ <<= 8;
             code_ = (code_ << 8) | next();

@@ -41,6 +41,35 @@ void find_trades(const ProgressiveMesh& mesh, WholeNumbers& numbers) {
     }
 }
 
+/// Places that a move of their vertex alone replaces later on, in plain splits: nothing else refers to them.
+/// They live until then, so the error just before says how exact they need to be.
+void find_rough(const ProgressiveMesh& mesh, WholeNumbers& numbers) {
+    numbers.birth_tolerance.assign(mesh.positions.size(), 0);
+    numbers.move_tolerance.assign(mesh.moves.size(), 0);
+    if (numbers.lossless) return;
+    std::vector<std::uint32_t> move_of(mesh.positions.size(), kNoVertex);
+    std::vector<bool> plain(mesh.positions.size(), false);  // is the place at hand of a plain split?
+    Split from{mesh.base_vertices, mesh.base_triangles, 0, 0, 0};
+    for (const Split& to : mesh.splits) {
+        const bool is_plain = to.vertices_end == from.vertices_end + 1 &&
+                              to.moves_end == from.moves_end + 1 &&
+                              mesh.parents[from.vertices_end] == mesh.moves[from.moves_end].vertex;
+        const bool replaces = is_plain && !numbers.traded[from.vertices_end];
+        for (std::uint32_t m = from.moves_end; m < to.moves_end; ++m) {
+            const std::uint32_t v = mesh.moves[m].vertex;
+            if (replaces && plain[v]) {
+                const double tolerance = kRoughShare * double(to.error) / numbers.lattice.step;
+                (move_of[v] == kNoVertex ? numbers.birth_tolerance[v] : numbers.move_tolerance[move_of[v]]) =
+                    tolerance;
+            }
+            move_of[v] = m;
+            plain[v] = replaces;
+        }
+        for (std::uint32_t v = from.vertices_end; v < to.vertices_end; ++v) plain[v] = replaces;
+        from = to;
+    }
+}
+
 }  // namespace
 
 WholeNumbers whole_numbers(const ProgressiveMesh& mesh, const Lattice& lattice, const WriteOptions& options) {
@@ -85,6 +114,7 @@ WholeNumbers whole_numbers(const ProgressiveMesh& mesh, const Lattice& lattice, 
             out.move_values[m * out.stride + column] = ordered_number(mesh.moves[m].weight);
     }
     find_trades(mesh, out);
+    find_rough(mesh, out);
     return out;
 }
 
@@ -166,6 +196,7 @@ void RecordEncoder::plan(std::uint32_t number, SplitPlan& out) {
         }
         std::sort(out.taken.begin() + begin, out.taken.end());
         birth.taken_end = static_cast<std::uint32_t>(out.taken.size());
+        birth.tolerance = numbers_.birth_tolerance[born.vertex];
         out.births.push_back(birth);
     }
     recorded_triangles_.clear();
@@ -184,6 +215,7 @@ void RecordEncoder::plan(std::uint32_t number, SplitPlan& out) {
         SplitPlan::Move move;
         move.vertex = vertex_[mesh_.moves[m].vertex];
         move.at = numbers_.move_at[m];
+        move.tolerance = numbers_.move_tolerance[m];
         if (numbers_.lossless) move.finer = numbers_.move_finer[m];
         const auto values = numbers_.move_values.begin() + static_cast<std::ptrdiff_t>(m) * stride;
         if (move.at == codec_.live.vertices[move.vertex].at &&

@@ -15,6 +15,9 @@
 
 namespace vsplit {
 
+/// Places that will be replaced may add this share to the error.
+inline constexpr double kRoughShare = 0.125;
+
 /// Every place and value of a progressive mesh as the stream has it.
 struct WholeNumbers {
     Lattice lattice;
@@ -28,6 +31,9 @@ struct WholeNumbers {
     /// Per vertex: it is born where its only parent was, and the parent moves away with it alone. Then the
     /// two change names, and nothing moves.
     std::vector<bool> traded;
+    /// Per birth and move: how far from the planes around it, in steps, the place may be until it is
+    /// replaced.
+    std::vector<double> birth_tolerance, move_tolerance;
 
     StreamShape shape() const { return shape_of(details, weights, lossless, largest_group); }
 };

@@ -75,6 +75,7 @@ bool SplitCodec::ask(Coder& coder, std::uint32_t v, bool splits) {
 
 template <class Coder>
 const char* SplitCodec::code_mark(Coder& coder, std::uint32_t& primary) {
+    if (!Coder::kWrites && !Coder::kDecodes) return nullptr;
     if (sparse_) {
         // Round the vertices, from the last one on.
         const std::uint32_t gap = gap_.code(
@@ -85,6 +86,14 @@ const char* SplitCodec::code_mark(Coder& coder, std::uint32_t& primary) {
         return nullptr;
     }
     for (std::uint32_t v; (v = asks_.next()) != kNoVertex;) {
+        // What the next in line need comes from memory meanwhile: the list of the seventh, the triangles of
+        // the fourth, the ring of the second.
+        std::uint64_t line = asks_.after(v);
+        for (int i = 1; line != 0 && i <= 7; ++i, line &= line - 1)
+            if (i == 2 || i == 4 || i == 7)
+                live.fetch(v + 1 + static_cast<std::uint32_t>(std::countr_zero(line)), i == 2   ? 2
+                                                                                       : i == 4 ? 1
+                                                                                                : 0);
         if (ask(coder, v, v == primary)) {
             primary = v;
             return nullptr;
@@ -287,7 +296,7 @@ const char* SplitCodec::code_taken(Coder& coder, const SplitPlan& wanted, std::s
         is_run_ = coder.bit(regular_[star_.closed],
                             !Coder::kDecodes && find_cut(taken, wanted, birth_id(index), cut));
         if (is_run_) {
-            run_ = cut_.code(coder, live, star_, cut);
+            run_ = Coder::kWrites || Coder::kDecodes ? cut_.code(coder, live, star_, cut) : cut;
             take_run(birth_id(index), out);
             return Coder::kDecodes && out.taken.size() > room.corners
                        ? "a block changes more corners than it announces"

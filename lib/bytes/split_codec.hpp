@@ -27,11 +27,14 @@ struct SplitPlan {
         std::array<std::uint32_t, 3>
             finer{};  ///< zigzag of the float's distance from its lattice point's, if lossless.
         std::uint32_t taken_end = 0;  ///< In `taken`.
+        /// Encoder: how far from its triangles' planes the place may be, in steps; 0: it must be exact.
+        double tolerance = 0;
     };
     struct Move {
         std::uint32_t vertex = 0;
         Lattice3 at{};
         std::array<std::uint32_t, 3> finer{};
+        double tolerance = 0;  ///< As of a birth.
     };
     std::vector<Birth> births;
     std::vector<std::uint32_t> taken;  ///< Corners that go over to the births, ascending within each.
@@ -94,7 +97,7 @@ class SplitCodec {
     /// canonical order. The reason if the stream contradicts itself.
     template <class Coder>
     const char* code_split(Coder& coder, std::uint32_t primary, const SplitPlan& wanted, SplitPlan& out);
-    /// Makes the split in the live mesh.
+    /// Makes the split that was just coded in the live mesh.
     void apply(const SplitPlan& plan);
 
     const StreamShape& shape() const { return shape_; }
@@ -113,6 +116,10 @@ class SplitCodec {
                             SplitPlan& out);
     template <class Coder>
     const char* code_taken(Coder& coder, const SplitPlan& wanted, std::size_t index, SplitPlan& out);
+    /// Encoder: is the rough place near enough to the planes around the one asked for? `ring` is the
+    /// vertex's, `partner` where the child or the parent will be.
+    bool may_be_rough(PlaceGuides& guides, const Lattice3& place, double tolerance, const Ring& ring,
+                      const Lattice3& partner);
     template <class Coder>
     void code_birth_place(Coder& coder, const SplitPlan& wanted, std::size_t index, bool moving,
                           SplitPlan& out);
@@ -139,6 +146,8 @@ class SplitCodec {
     bool find_cut(std::span<const std::uint32_t> taken, const SplitPlan& wanted, std::uint32_t child,
                   Cut& cut) const;
     void take_run(std::uint32_t child, SplitPlan& out);
+    /// The split at hand, if it is a run of its parent's fan and nothing else.
+    void apply_run(const SplitPlan& plan);
     void predict_values(std::uint32_t parent, const SplitPlan& out);
     std::uint32_t birth_id(std::size_t index) const {
         return live.vertex_count() + static_cast<std::uint32_t>(index);
@@ -161,7 +170,7 @@ class SplitCodec {
     std::array<BitModel, 2> one_birth_, regular_, implied_, place_moves_, same_move_, same_place_,
         group_stays_;
     std::array<BitModel, 3> moved_;
-    std::array<BitModel, 2> twin_moved_;
+    std::array<BitModel, 2> twin_moved_, rough_;
     BitModel in_mask_;
     NumberModel births_, twin_, far_, moves_, moved_far_, extra_, corner_birth_, corner_parent_, corner_ring_,
         corner_far_;
@@ -172,11 +181,11 @@ class SplitCodec {
     // The birth at hand.
     Star star_;
     Cut run_;
-    bool is_run_ = false;
+    bool is_run_ = false, all_implied_ = false;
     Ring child_ring_, parent_ring_;
     PlaceGuides guides_;
     std::vector<Triangle> implied_triangles_;
-    std::vector<std::uint32_t> implied_groups_, near_, scratch_, touched_;
+    std::vector<std::uint32_t> implied_groups_, near_, scratch_, touched_, kept_, run_corners_;
     std::vector<std::int32_t> predicted_;
     std::vector<std::uint32_t> scales_;
     std::vector<bool> used_;

@@ -3,6 +3,7 @@
 //
 // The second half of SplitCodec: places, moves, new triangles, attributes, and what a split does.
 #include <algorithm>
+#include <cmath>
 
 #include "place_fit.hpp"
 #include "split_codec.hpp"
@@ -34,6 +35,31 @@ void SplitCodec::code_finer(Coder& coder, const std::array<std::uint32_t, 3>& wa
         for (std::size_t i = 0; i < 3; ++i) out[i] = finer_[i].code(coder, wanted[i]);
 }
 
+bool SplitCodec::may_be_rough(PlaceGuides& guides, const Lattice3& place, double tolerance, const Ring& ring,
+                              const Lattice3& partner) {
+    NoCoder look;
+    const Lattice3 near = place_.code(look, guides, place, true);  // changes no model
+    const auto offset = [&](const Lattice3& p) {
+        return std::array<double, 3>{double(p[0]) - place[0], double(p[1]) - place[1],
+                                     double(p[2]) - place[2]};
+    };
+    const auto moved = offset(near);
+    auto before = offset(partner);
+    for (std::uint32_t i = 0; i <= ring.size; ++i) {
+        const auto now = offset(i == ring.size ? partner : live.vertices[ring.vertex[i]].at);
+        const std::array<double, 3> normal = {before[1] * now[2] - before[2] * now[1],
+                                              before[2] * now[0] - before[0] * now[2],
+                                              before[0] * now[1] - before[1] * now[0]};
+        const double length =
+            std::sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
+        const double height = moved[0] * normal[0] + moved[1] * normal[1] + moved[2] * normal[2];
+        if (std::abs(height) > tolerance * length) return false;
+        before = now;
+    }
+    // An edge of the mesh's boundary has no plane that would keep it.
+    return !ring.open;
+}
+
 template <class Coder>
 void SplitCodec::code_birth_place(Coder& coder, const SplitPlan& wanted, std::size_t index, bool moving,
                                   SplitPlan& out) {
@@ -48,7 +74,15 @@ void SplitCodec::code_birth_place(Coder& coder, const SplitPlan& wanted, std::si
     } else {
         if (is_run_) {
             guides_ = place_.guide_birth(live, birth.parent, child_ring_, moving);
-            birth.at = place_.code(coder, guides_, asked.at);
+            bool rough = false;
+            if (!Coder::kDecodes && moving && asked.tolerance > 0) {
+                const auto move =
+                    std::find_if(wanted.moves.begin(), wanted.moves.end(),
+                                 [&](const SplitPlan::Move& m) { return m.vertex == birth.parent; });
+                rough = may_be_rough(guides_, asked.at, asked.tolerance, child_ring_, move->at);
+            }
+            if (moving && !shape_.lossless) rough = coder.bit(rough_[0], rough);
+            birth.at = place_.code(coder, guides_, asked.at, rough);
             if (!Coder::kDecodes && fit) fit->add(guides_, birth.at);
         } else {
             birth.at =
@@ -82,7 +116,10 @@ void SplitCodec::code_move(Coder& coder, const SplitPlan& wanted, std::size_t wh
     } else if (coder.bit(place_moves_[guided], asked.at != now || asked.finer != finer_now)) {
         if (guided) {
             PlaceGuides guides = place_.guide_move(live, vertex, parent_ring_, out.births.back().at);
-            move.at = place_.code(coder, guides, asked.at);
+            bool rough = !Coder::kDecodes && asked.tolerance > 0 &&
+                         may_be_rough(guides, asked.at, asked.tolerance, parent_ring_, out.births.back().at);
+            if (!shape_.lossless) rough = coder.bit(rough_[1], rough);
+            move.at = place_.code(coder, guides, asked.at, rough);
             if (!Coder::kDecodes && fit) fit->add(guides, move.at);
         } else {
             move.at = place_.code_free(coder, now, asked.at);
@@ -211,6 +248,7 @@ const char* SplitCodec::code_triangles(Coder& coder, const SplitPlan& wanted, Sp
     // Encoder: which of the triangles asked for are the implied ones?
     used_.assign(wanted.triangles.size(), false);
     bool all = true;
+    all_implied_ = false;
     if (!Coder::kDecodes)
         for (const Triangle& implied : implied_triangles_) {
             std::uint32_t i = 0;
@@ -229,6 +267,7 @@ const char* SplitCodec::code_triangles(Coder& coder, const SplitPlan& wanted, Sp
             out.sources.clear();
             used_.assign(wanted.triangles.size(), false);
         }
+        all_implied_ = all;
         if (all) {
             out.triangles = implied_triangles_;
             for (std::size_t i = 0; i < implied_triangles_.size(); ++i)
@@ -339,7 +378,76 @@ void SplitCodec::code_base(Coder& coder) {
 
 // ---- What a split does
 
+void SplitCodec::apply_run(const SplitPlan& plan) {
+    const std::size_t stride = shape_.stride();
+    const SplitPlan::Birth& birth = plan.births[0];
+    const std::uint32_t p = birth.parent, child = live.vertex_count(), n = star_.size,
+                        ring = star_.ring_size(), begin = run_.begin, length = run_.length;
+    const Lattice3 was = live.vertices[p].at;
+    if (!plan.moves.empty()) {
+        live.vertices[p].at = plan.moves[0].at;
+        if (shape_.lossless) finer[p] = plan.moves[0].finer;
+        std::copy_n(plan.move_values.begin(), stride,
+                    values.begin() + static_cast<std::ptrdiff_t>(p * stride));
+    }
+    live.add_vertex(birth.at);
+    values.insert(values.end(), plan.birth_values.begin(), plan.birth_values.end());
+    if (shape_.lossless) finer.push_back(birth.finer);
+    LiveVertex &parent = live.vertices[p], &born = live.vertices[child];
+    Lattice3 stays, goes;  // by how much the centre of a sector moves: the parent's, the child's
+    for (std::size_t k = 0; k < 3; ++k) stays[k] = parent.at[k] - was[k], goes[k] = birth.at[k] - was[k];
+    const auto taken = [&](std::uint32_t i) { return (i >= begin ? i : i + n) - begin < length; };
+    kept_.clear();
+    run_corners_.clear();
+    std::array<std::uint32_t, 3> born_ring{}, parent_ring{};
+    bool before = star_.closed && taken(n - 1);
+    for (std::uint32_t i = 0; i < ring; ++i) {
+        LiveVertex& here = live.vertices[star_.ring[i]];
+        here.touched = sweep_;
+        asks_.add(star_.ring[i]);
+        // The sectors on both sides of ring vertex i.
+        const bool is_left = star_.closed || i > 0, is_right = star_.closed || i < n;
+        const bool right = is_right && taken(i);
+        const Lattice3 none{},
+            &a = !is_left ? none
+                 : before ? goes
+                          : stays,
+            &b = !is_right ? none
+                 : right   ? goes
+                           : stays;
+        for (std::size_t k = 0; k < 3; ++k) {
+            here.ring[k] += static_cast<std::uint32_t>(a[k] + b[k]);
+            const auto at = static_cast<std::uint32_t>(here.at[k]);
+            const std::uint32_t sectors = std::uint32_t{is_left} + std::uint32_t{is_right};
+            const std::uint32_t in = std::uint32_t{is_left && before} + std::uint32_t{right};
+            born_ring[k] += in * at;
+            parent_ring[k] += (sectors - in) * at;
+        }
+        if (is_right) {
+            const std::uint32_t t = star_.sector[i];
+            Triangle& c = live.triangles[t];
+            const std::uint32_t k = c[0] == p ? 0 : c[1] == p ? 1 : 2;
+            if (right) c[k] = child;
+            (right ? run_corners_ : kept_).push_back(3 * t + k);
+        }
+        before = right;
+    }
+    born.ring = born_ring;
+    parent.ring = parent_ring;
+    born.acted = born.touched = parent.acted = parent.touched = sweep_;
+    asks_.add(p);
+    asks_.add(child);
+    live.relink(p, kept_);
+    live.relink(child, run_corners_);
+    for (const Triangle& triangle : plan.triangles) live.add_triangle(triangle);
+    if (shape_.group_bits > 0) groups.insert(groups.end(), plan.groups.begin(), plan.groups.end());
+}
+
 void SplitCodec::apply(const SplitPlan& plan) {
+    if (is_run_ && plan.births.size() == 1 && plan.triangles.size() == implied_triangles_.size() &&
+        all_implied_ &&
+        (plan.moves.empty() || (plan.moves.size() == 1 && plan.moves[0].vertex == plan.births[0].parent)))
+        return apply_run(plan);
     const std::size_t stride = shape_.stride();
     const std::uint32_t first = live.vertex_count();
     // Triangles whose places change: all around a vertex that moves, else those that are taken.

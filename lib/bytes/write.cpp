@@ -66,7 +66,11 @@ Result<Encoded> encode(const ProgressiveMesh& mesh, const WriteOptions& options)
             options);
     }
     WholeNumbers& numbers = out.numbers;
-    const std::vector<Sweep> sweeps = schedule(mesh, numbers.traded);
+    std::vector<Sweep> sweeps = schedule(mesh, numbers.traded);
+    const auto may_be_rough = [](double tolerance) { return tolerance > 0; };
+    if (std::any_of(numbers.birth_tolerance.begin(), numbers.birth_tolerance.end(), may_be_rough) ||
+        std::any_of(numbers.move_tolerance.begin(), numbers.move_tolerance.end(), may_be_rough))
+        for (Sweep& sweep : sweeps) sweep.error *= 1 + static_cast<float>(kRoughShare);
 
     // The first pass learns the weights of prediction.
     PlaceFit fit;

@@ -10,7 +10,7 @@ import tempfile
 
 CODE = {'.cpp', '.hpp', '.h', '.c', '.cc', '.ipp'}
 SCRIPTS = {'.py', '.mjs', '.js', '.sh', '.cmake'}
-SKIPPED = {'build', 'out', 'node_modules', '.git', '__pycache__', 'LICENSES'}
+SKIPPED = {'build', 'dist', 'out', 'node_modules', '.git', '__pycache__', 'LICENSES'}
 
 # Folders, what may not be there, why. `names`: anywhere in the text, comments too; `includes`: in an #include.
 NAMES_FORBIDDEN = re.compile(r'CGAL|OpenMesh|tiny_?gltf|\bVTK\b|\bvtk[A-Z]', re.IGNORECASE)

@@ -27,11 +27,16 @@ try {
     await client.send('Tracing.end');
     await ended;
     const main = new Set(events.filter((e) => e.name === 'thread_name' && e.args.name === 'CrRendererMain').map((e) => `${e.pid}/${e.tid}`));
-    const tasks = events.filter((e) => main.has(`${e.pid}/${e.tid}`) && e.ph === 'X' && /RunTask/.test(e.name)).sort((a, b) => b.dur - a.dur);
+    const tasks = events.filter((e) => main.has(`${e.pid}/${e.tid}`) && e.ph === 'X' && e.name === 'RunTask');
+    const start = Math.min(...tasks.map((t) => t.ts));
     const inside = (task) => events.filter((e) => e.pid === task.pid && e.tid === task.tid && e.ph === 'X' && e !== task && e.ts >= task.ts && e.ts + e.dur <= task.ts + task.dur && e.dur > task.dur / 2 && !/RunTask/.test(e.name)).sort((a, b) => b.dur - a.dur).map((e) => e.name);
     const state = await page.evaluate(() => ({ update: window.vsplit.state.longestUpdate, frame: window.vsplit.state.longestFrame }));
     console.log(`${basename(file)}: whole after ${seconds.toFixed(1)} s; longest update() ${state.update.toFixed(1)} ms, longest update and draw ${state.frame.toFixed(1)} ms`);
-    for (const task of tasks.slice(0, 12)) console.log(`${(task.dur / 1000).toFixed(1)} ms (${((task.tdur ?? task.dur) / 1000).toFixed(1)} on the CPU) ${[...new Set(inside(task))].slice(0, 4).join(' > ')}`);
+    for (const [what, time] of [['on the CPU', (task) => task.tdur ?? 0], ['with what it waited for', (task) => task.dur]]) {
+        console.log(`the longest of ${tasks.length} tasks, ${what}:`);
+        for (const task of tasks.sort((a, b) => time(b) - time(a)).slice(0, 6))
+            console.log(`  ${(time(task) / 1000).toFixed(1)} ms at ${((task.ts - start) / 1e6).toFixed(2)} s  ${[...new Set(inside(task))].slice(0, 4).join(' > ')}`);
+    }
 } finally {
     await browser.close();
     server.stop();

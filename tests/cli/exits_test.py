@@ -15,6 +15,7 @@ class Exits(CommandTest):
         before = self.names()
         for args in ((), ('frobnicate',), ('bake',), ('bake', 'model.ply'), ('bake', 'model.ply', '-o'), ('bake', 'model.ply', '-o', 'x.pmesh', '--cost', 'cheap'),
                      ('bake', 'model.ply', '-o', 'x.pmesh', '--placement', 'middle'), ('bake', 'model.ply', '-o', 'x.pmesh', '--lock', 'everything'),
+                     ('bake', 'model.ply', '-o', 'x.pmesh', '--profile', 'small'), ('bake', 'model.ply', '-o', 'x.pmesh', '--profile', 'stream', '--placement', 'optimal'),
                      ('bake', 'model.ply', '-o', 'x.pmesh', '--lock', 'features='), ('bake', 'model.ply', '-o', 'x.pmesh', '--lock', 'features=nan'),
                      ('bake', 'model.ply', '-o', 'x.pmesh', '--lock', 'features=200'), ('bake', 'model.ply', '-o', 'x.pmesh', '--weld', 'some'),
                      ('bake', 'model.ply', '-o', 'x.pmesh', '--threads', '-1'), ('bake', 'model.ply', '-o', 'x.pmesh', '--threads', '999999'),

@@ -101,6 +101,16 @@ class Formats(CommandTest):
             last = report['triangles']
         self.assertEqual(last, full['base']['triangles'])
 
+    def test_profiles(self):
+        self.sample('whale.ply', 3000, 'whale')
+        for name, flags in (('default', ()), ('quality', ('--profile', 'quality')), ('stream', ('--profile', 'stream')),
+                            ('endpoint', ('--placement', 'endpoint'))):
+            self.vsplit('bake', 'whale.ply', *flags, '-o', name + '.pmesh')
+        read = lambda name: self.path(name + '.pmesh').read_bytes()
+        self.assertEqual(read('quality'), read('default'))
+        self.assertEqual(read('stream'), read('endpoint'))
+        self.assertLess(len(read('stream')), 0.9 * len(read('quality')))
+
     def test_percentages_are_ratios(self):
         self.sample('whale.ply', 1500, 'whale')
         self.vsplit('bake', 'whale.ply', '-o', 'whale.pmesh')

@@ -237,10 +237,45 @@ def instanced_on_gpu(n=6):
     return s
 
 
+def crowded(parts=110):
+    """More than 100 primitives in as many meshes, a fan, 8 joints a vertex, cubic steps of an animation, glass of several extensions."""
+    s = Scene()
+    s.use('KHR_materials_transmission', 'KHR_materials_volume', 'KHR_materials_ior', 'KHR_materials_clearcoat')
+    glass = s.add('materials', {'extensions': {'KHR_materials_transmission': {'transmissionFactor': 1.0}, 'KHR_materials_ior': {'ior': 1.4},
+                                               'KHR_materials_volume': {'thicknessFactor': 0.5}}})
+    coat = s.add('materials', {'extensions': {'KHR_materials_clearcoat': {'clearcoatFactor': 0.8, 'clearcoatRoughnessFactor': 0.1}}, 'alphaMode': 'MASK'})
+    for i in range(parts):
+        points, normals, uvs, corners = sheet(4, lambda u, v, i=i: 0.1 * math.sin(i + 5 * u) * math.cos(4 * v))
+        s.node(mesh=s.add('meshes', {'primitives': [{
+            'attributes': {'POSITION': s.accessor(points, bounds=True), 'NORMAL': s.accessor(normals), 'TEXCOORD_0': s.accessor(uvs, kind='VEC2')},
+            'indices': s.accessor(corners, USHORT, 'SCALAR', padded=False), 'material': (glass, coat)[i % 2]}]}),
+            translation=[1.2 * (i % 11), 1.2 * (i // 11), 0])
+    ring = [(0.0, 0.0, 0.2)] + [(math.cos(0.3 * i), math.sin(0.3 * i), 0.0) for i in range(15)]
+    s.node(mesh=s.add('meshes', {'primitives': [{'attributes': {'POSITION': s.accessor(ring, bounds=True)}, 'mode': 6, 'material': coat}]}), translation=[-3, 0, 0])
+    points, normals, uvs, corners = sheet(10)
+    share = [[math.exp(-3 * (8 * p[1] - j) ** 2 / 8) for j in range(8)] for p in points]
+    rows = [[round(w / sum(row), 4) for w in row] for row in share]
+    for row in rows:
+        row[0] += 1 - sum(row)
+    joints = [s.accessor([tuple(range(4 * k, 4 * k + 4))] * len(points), UBYTE, 'VEC4') for k in range(2)]
+    weights = [s.accessor([tuple(row[4 * k:4 * k + 4]) for row in rows], kind='VEC4') for k in range(2)]
+    bones = [s.node(name=f'bone {j}', translation=[0, j / 8, 0]) for j in range(8)]
+    inverse = s.accessor([[1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, -j / 8, 0, 1] for j in range(8)], kind='MAT4')
+    mesh = s.add('meshes', {'primitives': [{'attributes': {'POSITION': s.accessor(points, bounds=True), 'NORMAL': s.accessor(normals),
+                                                           'JOINTS_0': joints[0], 'JOINTS_1': joints[1], 'WEIGHTS_0': weights[0], 'WEIGHTS_1': weights[1]},
+                                            'indices': s.accessor(corners, USHORT, 'SCALAR', padded=False), 'material': coat}]})
+    s.node(mesh=mesh, skin=s.add('skins', {'joints': bones, 'inverseBindMatrices': inverse}))
+    times = s.accessor([0.0, 1.0], kind='SCALAR', bounds=True)
+    cubic = s.accessor([(0, 0, 0)] * 3 + [(0, 0, 0), (0, 1, 0), (0, 0, 0)])
+    s.add('animations', {'samplers': [{'input': times, 'output': cubic, 'interpolation': 'CUBICSPLINE'}],
+                         'channels': [{'sampler': 0, 'target': {'node': bones[7], 'path': 'translation'}}]})
+    return s
+
+
 def write_all(folder):
     """Every scene as a file; the names of the scenes."""
     made = {'skinned.glb': skinned().glb(), 'morphing.glb': morphing().glb(), 'assembly.glb': assembly().glb(), 'embedded.gltf': assembly(3).gltf(),
-            'quantised.glb': quantised().glb(), 'instanced.glb': instanced_on_gpu().glb()}
+            'quantised.glb': quantised().glb(), 'instanced.glb': instanced_on_gpu().glb(), 'crowded.glb': crowded().glb()}
     text, files = textured('outside')
     made['textured.gltf'] = text
     for name, data in {**made, **files}.items():

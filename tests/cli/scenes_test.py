@@ -135,6 +135,15 @@ class Scenes(SceneTest):
         self.assertTrue(coarse == 1 or abs(coarse / fine - 4) < 1e-6, (fine, coarse))
         self.assertGreater(first[0], first[-1])
 
+    def test_coarse_levels_of_scenes_full_of_seams(self):
+        for name, ratio in (('2CylinderEngine.glb', 0.01), ('CesiumMan.glb', 0.01), ('crowded.glb', 0.05)):
+            if name not in self.scenes:
+                continue  # said in setUp
+            said = self.json('lods', name, '--ratios', f'1,{ratio}', '-o', 'coarse.glb', '-f')
+            full, coarse = (level['triangles'] for level in said['levels'])
+            self.assertLessEqual(coarse, ratio * full + 1, name)
+            self.assertGreater(coarse, 0)
+
     def test_options_that_do_not_go_together(self):
         for flags in (['--ratios', '1', '--errors', '0'], [], ['--ratios', '1', '--draco', '--meshopt'], ['--pixels', '1080'], ['--pixels', '0:1'],
                       ['--pixels', '1080:1:1'], ['--ratios', '1', '--separate', '--shared-vertices'], ['--errors', '-1'], ['--ratios', '2']):

@@ -146,7 +146,7 @@ TEST_CASE("Record origins: every vertex of the record is one of the input's, at 
 TEST_CASE("Keep: the weight found keeps what was asked, within 1 %") {
     const Mesh mesh = bumpy(30);
     for (const Cost cost : {Cost::kPaper, Cost::kQuadric})
-        for (const Keep wish : {Keep{"left", 0.9, 0.4}, Keep{"left", 0.3, 0.5}}) {
+        for (const Keep& wish : {Keep{"left", 0.9, 0.4}, Keep{"left", 0.3, 0.5}}) {
             CAPTURE(int(cost), wish.share);
             CollapseOptions options;
             options.cost = cost;

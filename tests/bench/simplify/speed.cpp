@@ -114,10 +114,11 @@ class Lane {
     std::vector<Sample> samples_;
 };
 
-Result<Json> record(const Mesh& mesh, std::size_t threads, bool calibrate) {
+/// The record alone, or with what comes after it: outliers put off, errors measured.
+Result<Json> record(const Mesh& mesh, std::size_t threads, bool finished) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
     bake::CollapseOptions options;
-    options.calibrate = calibrate;
+    options.put_off_outliers = options.calibrate = finished;
     Sample sample;
     const Meter meter;
     const auto result = bake::collapse(mesh, options);

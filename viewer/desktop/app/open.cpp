@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "open.hpp"
 
+#include <fmt/format.h>
+
 #include <cstring>
 
 #include "cloud.hpp"
@@ -48,6 +50,18 @@ Result<studio::Source> open_source(const InputOptions& input, const Common& comm
     if (is_gltf(file->bytes, extension)) {
         auto scene = load_scene(input, file->bytes, exit);
         if (!scene) return scene.error();
+        if (scene->parts.size() > 1) {
+            // Each part is in a space of its own: one picture of all needs them where their nodes place them.
+            auto whole = load_mesh(input, exit);
+            if (!whole) return whole.error();
+            if (!common.quiet)
+                fmt::print(stderr, "vsplit: {}: {} meshes, taken as one without their materials\n",
+                           input.path, scene->parts.size());
+            source.mesh = std::move(whole->mesh);
+            source.vertex_of = std::move(whole->vertex_of);
+            source.file_vertices = whole->report.vertices_in;
+            return source;
+        }
         source.mesh = std::move(scene->mesh);
         source.part_of = scene->part_of;
         scene->mesh = {};
@@ -68,17 +82,24 @@ Result<studio::Source> open_source(const InputOptions& input, const Common& comm
 Result<std::unique_ptr<studio::Document>> open_document(const InputOptions& input, const CollapseFlags& flags,
                                                         const std::string& marks, const Common& common,
                                                         int& exit) {
+    auto source = open_source(input, common, exit);
+    if (!source) return source.error();
+    return document_of(std::move(*source), flags, marks, common, exit);
+}
+
+Result<std::unique_ptr<studio::Document>> document_of(studio::Source source, const CollapseFlags& flags,
+                                                      const std::string& marks, const Common& common,
+                                                      int& exit) {
+    const std::string path = source.path;
     bake::CollapseOptions options;
     if (const auto reason = flags.set(options)) {
         exit = fail_usage(*reason);
         return Error{ErrorCode::kArgument, *reason, Error::kNowhere, 0};
     }
-    auto source = open_source(input, common, exit);
-    if (!source) return source.error();
     ProgressBar bar(common);
-    auto document = studio::Document::open(std::move(*source), options, bar.callback());
+    auto document = studio::Document::open(std::move(source), options, bar.callback());
     if (!document) {
-        exit = fail_input(input.path, document.error());
+        exit = fail_input(path, document.error());
         return document;
     }
     if (marks.empty()) return document;

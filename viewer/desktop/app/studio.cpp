@@ -10,7 +10,7 @@
 #ifdef VSPLIT_VIEWER
 #include "../window/picture.hpp"
 #include "../window/window.hpp"
-#include "cloud.hpp"
+#include "watch.hpp"
 #endif
 
 namespace vsplit::app {
@@ -65,7 +65,10 @@ int StudioCommand::run() const {
         options.marks = marks;
         bake::CollapseOptions chosen;
         if (const auto reason = collapse.set(chosen)) return fail_usage(*reason);
-        auto document = open_document(input, collapse, marks, common, exit);
+        auto watched = watch_reconstruction(input.path, options.width, options.height, common.threads, exit);
+        if (watched && !*watched) return exit;
+        auto document = watched ? document_of(std::move(**watched), collapse, marks, common, exit)
+                                : open_document(input, collapse, marks, common, exit);
         if (!document) return exit;
         return studio::run_window(std::move(*document), options) ? kDone : kFailed;
 #else

@@ -221,6 +221,7 @@ Mesh Document::refined_in_place() const {
     std::vector<std::uint32_t> to(full_.positions.size());
     Mesh mesh;
     mesh.positions = full_.positions;
+    mesh.origin = full_.origin;
     for (std::uint32_t v = 0; v < to.size(); ++v) {
         const bool marked = origins_[v] != kNoVertex && marks.region[origins_[v]] != 0;
         const std::uint32_t parent = live_->state().parents[v];

@@ -21,12 +21,11 @@ constexpr std::pair<std::string_view, Heat> kNames[] = {{"none", Heat::kNone},
                                                         {"curvature", Heat::kCurvature},
                                                         {"quality", Heat::kQuality}};
 
-std::vector<float> errors(const Document& document) {
-    const LiveMesh& live = document.live();
+std::vector<float> errors(const Document& document, const LiveMesh& live) {
     const auto positions = live.positions();
     const auto triangles = live.triangles();
     const Surface surface(positions, triangles, false);
-    const std::size_t alive = positions.size(), all = document.live().state().positions.size();
+    const std::size_t alive = positions.size(), all = live.state().positions.size();
     std::vector<std::uint32_t> ancestor(all);
     std::vector<float> distances(alive, 0);
     for (std::uint32_t v = 0; v < all; ++v) {
@@ -58,9 +57,9 @@ const char* heat_name(Heat heat) {
     return kNames[std::size_t(heat)].first.data();
 }
 
-HeatMap heat_map(const Document& document, Heat heat) {
-    const auto positions = document.live().positions();
-    const auto triangles = document.live().triangles();
+HeatMap heat_map(const Document& document, const LiveMesh& live, Heat heat) {
+    const auto positions = live.positions();
+    const auto triangles = live.triangles();
     HeatMap map;
     map.values.assign(positions.size(), 0);
     const auto up_to = [&](double share) {
@@ -74,7 +73,7 @@ HeatMap heat_map(const Document& document, Heat heat) {
         case Heat::kNone:
             break;
         case Heat::kError:
-            map.values = errors(document);
+            map.values = errors(document, live);
             map.high = up_to(0.99);
             if (!(map.high > 0))
                 map.high = up_to(1) > 0 ? up_to(1) : float(1e-6 * document.box().diagonal() + 1e-30);
@@ -139,13 +138,13 @@ Rgb plain_colour(const Document& document, std::uint32_t vertex) {
     return mixed;
 }
 
-std::vector<Rgb> level_colours(const Document& document, Heat heat, HeatMap* map) {
-    std::vector<Rgb> colours(document.live().positions().size());
+std::vector<Rgb> level_colours(const Document& document, const LiveMesh& live, Heat heat, HeatMap* map) {
+    std::vector<Rgb> colours(live.positions().size());
     if (heat == Heat::kNone) {
         for (std::uint32_t v = 0; v < colours.size(); ++v) colours[v] = plain_colour(document, v);
         return colours;
     }
-    HeatMap made = heat_map(document, heat);
+    HeatMap made = heat_map(document, live, heat);
     const double span = std::max(1e-30, double(made.high) - double(made.low));
     for (std::size_t v = 0; v < colours.size(); ++v)
         colours[v] = ramp((double(made.values[v]) - double(made.low)) / span);

@@ -29,16 +29,18 @@ struct HeatMap {
     std::vector<float> values;  ///< One a vertex of the level.
     float low = 0, high = 1;    ///< What the ends of the ramp mean.
 };
-HeatMap heat_map(const Document& document, Heat heat);
+HeatMap heat_map(const Document& document, const LiveMesh& live, Heat heat);
 
 using Rgb = std::array<std::uint8_t, 3>;
 /// Dark blue to yellow, growing lighter all the way; `t` from 0 to 1.
 Rgb ramp(double t);
 Rgb rgb(std::uint32_t colour);
 
+/// `live` is the document's record at any level.
 /// One colour a vertex of the level: the ramp, or for kNone a plain grey (of groups, a tint each) and
 /// the regions by their strength.
-std::vector<Rgb> level_colours(const Document& document, Heat heat, HeatMap* map = nullptr);
+std::vector<Rgb> level_colours(const Document& document, const LiveMesh& live, Heat heat,
+                               HeatMap* map = nullptr);
 /// The colour of one vertex for kNone.
 Rgb plain_colour(const Document& document, std::uint32_t vertex);
 

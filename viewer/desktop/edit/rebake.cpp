@@ -6,15 +6,25 @@ namespace vsplit::studio {
 
 void Rebake::start(Mesh mesh, bake::CollapseOptions options) {
     cancel();
-    stop_ = ready_ = false;
-    running_ = true;
+    stop_ = false;
+    running_ = first_ = true;
     progress_ = 0;
-    thread_ = std::thread([this, mesh = std::move(mesh), options = std::move(options)] {
-        result_.emplace(bake::collapse(mesh, options, [this](std::string_view stage, double done) {
-            progress_ = stage == "collapse" ? 0.7 * done : 0.7 + 0.3 * done;
-            return !stop_;
-        }));
-        ready_ = true;
+    thread_ = std::thread([this, mesh = std::move(mesh), options = std::move(options)]() mutable {
+        for (const bool measured : {false, true}) {
+            options.calibrate = measured;
+            auto result = bake::collapse(mesh, options, [&](std::string_view stage, double done) {
+                progress_ = !measured             ? 0.2 * done
+                            : stage == "collapse" ? 0.2 + 0.2 * done
+                                                  : 0.4 + 0.6 * done;
+                return !stop_;
+            });
+            const bool ok = result.ok();
+            {
+                const std::lock_guard guard(lock_);
+                result_.emplace(std::move(result));
+            }
+            if (!ok) break;
+        }
         running_ = false;
     });
 }
@@ -23,15 +33,15 @@ void Rebake::cancel() {
     stop_ = true;
     if (thread_.joinable()) thread_.join();
     result_.reset();
-    ready_ = false;
+    running_ = first_ = false;
 }
 
 std::optional<Result<bake::CollapseResult>> Rebake::take() {
-    if (!ready_) return std::nullopt;
-    thread_.join();
-    ready_ = false;
+    const std::lock_guard guard(lock_);
+    if (!result_) return std::nullopt;
     std::optional<Result<bake::CollapseResult>> result = std::move(result_);
     result_.reset();
+    first_ = false;
     return result;
 }
 

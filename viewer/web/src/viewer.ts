@@ -35,7 +35,7 @@ let model: VsplitModel | undefined;
 let mixer: AnimationMixer | undefined;
 let framed = false;
 /** Of the camera's height, what the controls leave free. */
-let share = 1;
+let share = 1, fitted = 1;
 let heats: Partial<Record<string, Heat>> = {};
 let plain = new Map<Mesh, Material | Material[]>();
 let drawn = true;
@@ -211,6 +211,10 @@ function resize() {
     share = (height - covered) / all;
     camera.aspect = width / Math.max(1, all);
     camera.setViewOffset(width, all, 0, covered, width, height);
+    // What filled the free part before fills it still.
+    const fits = Math.min(share, camera.aspect);
+    if (framed) camera.position.sub(orbit.target).multiplyScalar(fitted / fits).add(orbit.target);
+    fitted = fits;
     camera.updateProjectionMatrix();
     wake();
 }

@@ -34,10 +34,10 @@ struct AttributeWeights {
     double texcoord = 0.5;  ///< Times how far the texture slides on the surface.
     double morph = 0.5;     ///< Times how far a morph target's vertex is moved elsewhere.
     // The others times the size of the triangles around, and:
-    double normal = 0.1;   ///< the difference of unit vectors;
+    double normal = 1.0;   ///< the difference of unit vectors;
     double tangent = 0.0;  ///< the same;
     double color = 0.1;    ///< the difference of colours;
-    double joints = 0.3;   ///< the difference of the joints' weights;
+    double joints = 1.0;   ///< the difference of the joints' weights;
     double other = 0.1;    ///< the difference over the attribute's range.
 };
 
@@ -70,8 +70,11 @@ struct CollapseOptions {
     /// Guard: least quality 4 sqrt(3) area / (sum of squared edges) of a changed triangle, unless it was
     /// worse before.
     double min_quality = 0.02;
-    /// Measures the distance to the input at a dozen levels and scales the recorded errors to bound it;
-    /// without, they are local estimates.
+    /// After the record, measures how far each collapse took the surface from the input, and puts off those
+    /// few that take it much farther than others of their time, so that no level has a far point for which
+    /// most of it is too fine. Their order is all that changes. Never with cost `paper`.
+    bool put_off_outliers = true;
+    /// Makes the recorded errors bounds of the measured distance to the input; without, they are estimates.
     bool calibrate = true;
 };
 
@@ -86,8 +89,8 @@ struct CollapseReport {
         0;  ///< Non-manifold corners, locked, or of infinite weight: never removed.
     std::string
         stopped_by;  ///< Why there is no coarser base: "every edge is guarded or would change the topology".
-    double collapse_cpu_seconds = 0;  ///< The record alone, all threads.
-    double calibrate_cpu_seconds = 0;
+    double collapse_cpu_seconds = 0;   ///< The record alone, all threads.
+    double calibrate_cpu_seconds = 0;  ///< What comes after it: measuring, and putting off.
 };
 
 struct CollapseResult {

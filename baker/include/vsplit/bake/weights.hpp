@@ -104,7 +104,7 @@ struct KeepResult {
     std::size_t bakes = 0;  ///< Records made to find it.
 };
 
-/// The weights that keep what is asked, within 1 %: each region's weight is searched by recording the
+/// The weights that keep what is asked, within 1 % (or a vertex, where that is more): each region's weight is searched by recording the
 /// sequence and counting, others staying as they are; with several, in turns. Sets them in `marks`. Errors:
 /// kArgument for a region that is not there or is empty, or a share that no weight reaches (the message says
 /// how far one gets); what collapse() returns.

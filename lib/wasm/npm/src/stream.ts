@@ -124,7 +124,10 @@ export class VsplitStream {
                 this.hold(part);
                 bytes = bytes.subarray(part.length);
                 this.fed += part.length;
-                if (this.holds < this.wanted() && !(last && bytes.length === 0)) return;
+                if (this.holds < this.wanted()) {
+                    if (!last || bytes.length > 0) return;
+                    if (this.info) throw new VsplitError('truncated', `The file ends within block ${this.blocks}.`, this.fed);
+                }
                 if (this.info) this.decode();
                 else bytes = this.begin(bytes, last && bytes.length === 0);
                 if (!this.info && last && bytes.length === 0) return;

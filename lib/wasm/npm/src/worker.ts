@@ -11,7 +11,7 @@ import { compileVsplit, VsplitStream } from './stream.js';
 const kFirstBytes = 32 * 1024;
 const kMostSceneBytes = 1024 * 1024 * 1024;
 const kPatchesOnTheirWay = 2;
-const kFetchesOfBlock = 3;
+const kFetches = 3;
 
 const post = (message: FromWorker, transfer: Transferable[] = []) => (self as unknown as { postMessage(m: unknown, t: Transferable[]): void }).postMessage(message, transfer);
 
@@ -46,10 +46,12 @@ class Session {
                 }
                 await this.follow();
             } catch (error) {
-                if (this.refetch(error)) continue;
+                if (this.refetch(error, opened)) continue;
+                if (opened) this.progress(true);
                 const known = error instanceof VsplitError ? error : new VsplitError('malformed', String((error as Error)?.message ?? error));
                 post({ type: 'error', code: known.code, message: known.message, offset: known.offset === undefined ? undefined : known.offset + (opened ? this.start : 0) });
                 this.failed = true;
+                if (!opened) this.front = new Uint8Array(0);
                 while (this.failed) await this.sleep();
             }
         }
@@ -70,7 +72,7 @@ class Session {
     }
     again() {
         this.failed = false;
-        this.damaged.times = 0;
+        this.damaged.times = 1;  // Past the caches.
         this.wake?.();
     }
 
@@ -94,13 +96,13 @@ class Session {
             this.start = glb.streamOffset;
             post({ type: 'scene', bytes: this.front.slice(0, glb.streamOffset) });
             this.stream = new VsplitStream(await module, this.options);
-            this.feed(this.front.subarray(glb.streamOffset), whole());
+            this.feedFront(glb.streamOffset, whole());
             await this.untilInfo();
             for (const mesh of glb.extension.meshes)
                 for (const primitive of mesh.primitives) this.stream.setScale(primitive.group, 2 ** -mesh.exponent);
         } else if (isPmesh(this.front)) {
             this.stream = new VsplitStream(await module, this.options);
-            this.feed(this.front, whole());
+            this.feedFront(0, whole());
             await this.untilInfo();
         } else {
             const text = new TextDecoder().decode(this.front.subarray(0, 512)).trimStart();
@@ -110,6 +112,7 @@ class Session {
         }
         this.front = new Uint8Array(0);
         post({ type: 'info', info: this.stream.info! });
+        this.progress(true);
     }
 
     /** Reads on until the front has so many bytes, or the file ends. */
@@ -117,7 +120,7 @@ class Session {
         const parts: Uint8Array[] = [this.front];
         let have = this.front.length;
         try {
-            await this.reader.read(have, bytes, (part) => { parts.push(part.slice()); have += part.length; this.retry = undefined; this.progress(); return true; }, new AbortController().signal);
+            await this.reader.read(have, bytes, (part) => { parts.push(part.slice()); have += part.length; this.retry = undefined; this.progress(); return true; }, new AbortController().signal, this.damaged.times > 0);
         } finally {
             const joined = new Uint8Array(have);
             let at = 0;
@@ -163,7 +166,7 @@ class Session {
         // What is held of a block that is not whole has been fed, and is not fetched again.
         await this.reader.read(this.position, end, (part) => {
             this.retry = undefined;
-            this.feed(part, false);
+            this.stream.feed(part);
             this.pump();
             this.progress();
             // A target that moved nearer: the block that is on its way is still taken.
@@ -171,15 +174,25 @@ class Session {
         }, this.fetching.signal, this.damaged.times > 0);
     }
 
-    private feed(bytes: Uint8Array, last: boolean) { this.stream.feed(bytes, last); }
+    /** What is behind the front may be damaged: that is fetched again once all is set up. */
+    private feedFront(from: number, last: boolean) {
+        try {
+            this.stream.feed(this.front.subarray(from), last);
+        } catch (error) {
+            if (!this.stream.info || !this.refetch(error, true)) throw error;
+        }
+    }
 
-    /** A block that came damaged is fetched again, past the caches, before anybody hears of it. */
-    private refetch(error: unknown): boolean {
-        if (!(error instanceof VsplitError) || error.code !== 'checksum' || !this.stream?.info) return false;
-        const block = this.stream.blocks;
+    /** What came damaged is fetched again, past the caches, before anybody hears of it. */
+    private refetch(error: unknown, opened: boolean): boolean {
+        if (!(error instanceof VsplitError) || error.code !== 'checksum') return false;
+        const block = opened ? this.stream.blocks : -1;
         this.damaged = { block, times: this.damaged.block === block ? this.damaged.times + 1 : 1 };
-        if (this.damaged.times < kFetchesOfBlock) return true;
-        error.message = `Block ${block} arrived damaged ${kFetchesOfBlock} times. What is shown is what came before it.`;
+        if (!opened) this.front = new Uint8Array(0);
+        if (this.damaged.times < kFetches) return true;
+        error.message = opened
+            ? `Block ${block} arrived damaged ${kFetches} times (its checksum does not match). What is shown is what came before it.`
+            : `The front of the file arrived damaged ${kFetches} times: ${error.message}.`;
         return false;
     }
 

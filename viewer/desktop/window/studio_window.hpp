@@ -1,0 +1,161 @@
+// SPDX-FileCopyrightText: 2026 The vsplit authors
+// SPDX-License-Identifier: MIT
+//
+// The window's state, and what its keys, buttons and strokes do. Private to this folder.
+#pragma once
+
+#include <vtkNew.h>
+#include <vtkRenderWindow.h>
+#include <vtkRenderWindowInteractor.h>
+#include <vtkRenderer.h>
+#include <vtkTextActor.h>
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "../edit/rebake.hpp"
+#include "panel.hpp"
+#include "view.hpp"
+#include "window.hpp"
+
+namespace vsplit::studio {
+
+/// What cells of the panel do. Regions are kRegion + number.
+enum Action : int {
+    kNothing = 0,
+    kRatio,
+    kError,
+    kRightRatio,
+    kSplit,
+    kSmooth,
+    kFlat,
+    kWire,
+    kHeatNone,
+    kHeatError,
+    kHeatWeight,
+    kHeatCurvature,
+    kHeatQuality,
+    kRefine,
+    kReset,
+    kAddRegion,
+    kLighter,
+    kHeavier,
+    kAutomatic,
+    kKeepShare,
+    kKeepRatio,
+    kKeep,
+    kSize,
+    kStrength,
+    kMirrorX,
+    kMirrorY,
+    kMirrorZ,
+    kPart,
+    kMaterial,
+    kSharp,
+    kSharpDegrees,
+    kUndo,
+    kRedo,
+    kApply,
+    kCancel,
+    kSave,
+    kLoad,
+    kExport,
+    kHelp,
+    kRegion = 1000
+};
+
+/// A level of the document's record in a viewport.
+struct Pane {
+    vtkNew<vtkRenderer> renderer;
+    std::unique_ptr<MeshView> view;
+    std::unique_ptr<LiveMesh> live;
+    vtkNew<vtkTextActor> caption;
+};
+
+class StudioWindow {
+  public:
+    StudioWindow(std::unique_ptr<Document> document, const WindowOptions& options);
+
+    void run();
+    /// Measures frames, strokes and bakes; prints one line each.
+    void bench();
+
+    // What the mouse and the keyboard do; x from the left, y from the top.
+    bool press(int x, int y, bool paint, bool erase);  ///< False: the camera's.
+    bool drag(int x, int y);
+    bool release();
+    void key(const std::string& name);
+    void tick();
+    void camera_moves();
+    void asked_to_close();
+    void resized();
+    /// Draws; in motion a coarser level if the one wanted takes too long.
+    void draw();
+    bool painting() const { return stroke_; }
+
+  private:
+    void act(int action, double value);
+    void act_on_region(int action);
+    void add_region();
+    void set_level(std::size_t level);
+    void set_split(bool on);
+    void layout();
+    void refresh_panel();
+    std::vector<Line> lines() const;
+    void show_pane(Pane& pane, std::size_t level);
+    void dab(int x, int y, bool erase);
+    void click_select(int x, int y);
+    std::optional<Hit> pick_at(int x, int y) const;
+    bool in_left_pane(int x) const;
+    int left_width() const;
+    void move();
+    void after_change(const std::string& what);
+    void autosave();
+    void recover();
+    std::string beside(const std::string& suffix) const;
+    bool write(const std::string& path, std::span<const std::byte> bytes, bool overwrite);
+    bool save();
+    void load();
+    void export_all();
+    void apply();
+    void take_bake();
+    void keep();
+    void say(const std::string& text);
+    void help();
+
+    std::unique_ptr<Document> document_;
+    WindowOptions options_;
+    vtkNew<vtkRenderWindow> window_;
+    vtkNew<vtkRenderWindowInteractor> interactor_;
+    vtkNew<vtkRenderer> panel_renderer_, sheet_renderer_;
+    std::unique_ptr<Panel> panel_;
+    std::unique_ptr<Sheet> sheet_;
+    vtkNew<vtkTextActor> status_;
+    Pane left_, right_;
+    Rebake rebake_;
+    std::uint64_t baked_version_ = 0;  // of the paint, in the record
+
+    Look look_;
+    bool split_ = false, refined_ = false;
+    double right_ratio_ = 1;
+    std::size_t level_ = 0;
+    std::size_t region_ = 1;
+    double brush_pixels_ = 24, strength_ = 1, sharp_degrees_ = 45, keep_share_ = 0.95, keep_ratio_ = 0.4;
+    unsigned mirror_ = 0;
+    int pending_ = kNothing;  // kPart or kMaterial: the next click selects
+
+    bool stroke_ = false, erase_ = false;
+    int last_x_ = 0, last_y_ = 0;
+    int dragging_ = kNothing;  // a slider
+    bool moving_ = false, question_ = false;
+    double moved_at_ = 0;
+    double budget_ = 30000;  // triangles that a moving picture may have
+    bool shown_coarse_ = false, panel_stale_ = true;
+    std::string message_;
+};
+
+double seconds_now();
+
+}  // namespace vsplit::studio
