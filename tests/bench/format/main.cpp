@@ -114,14 +114,16 @@ int main(int argc, char** argv) {
     }
     if (wants("speed")) {
         figures.speeds_on = describe_machine();
-        figures.speeds.clear();
         for (const std::string& file : options.speed) {
             fmt::print(stderr, "{}: speed\n", file);
             const auto speeds = measure_speeds(file);
-            if (speeds)
-                figures.speeds.insert(figures.speeds.end(), speeds->begin(), speeds->end());
-            else
+            if (!speeds) {
                 failed(file, speeds.error());
+                continue;
+            }
+            // Models may be timed in different runs, each of them short.
+            std::erase_if(figures.speeds, [&](const Speeds& s) { return s.model == speeds->front().model; });
+            figures.speeds.insert(figures.speeds.end(), speeds->begin(), speeds->end());
         }
     }
     if (!options.json.empty()) ok = write(options.json, nlohmann::json(figures).dump(1) + "\n") && ok;

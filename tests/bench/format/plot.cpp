@@ -111,9 +111,10 @@ void panel(Out out, const ModelSizes& model, double left) {
     for (const Series& s : all) {
         if (s.line) {
             std::string path;
+            // Steps: an error holds until the next block, or level, is whole.
             for (const Point& p : s.points)
-                path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? "M" : "L", x.at(double(p.bytes)),
-                                    y.at(p.error));
+                path += fmt::format("{}{:.1f}{}{:.1f}", path.empty() ? "M" : "H", x.at(double(p.bytes)),
+                                    path.empty() ? " " : "V", y.at(p.error));
             fmt::format_to(out, "<path d='{}' stroke='{}' stroke-width='1.5'{}/>\n", path, s.color,
                            s.dashed ? " stroke-dasharray='4 3'" : "");
         }
