@@ -43,15 +43,6 @@ bool recall(const std::string& path, Figures& figures) {
     return true;
 }
 
-/// How to repeat it: the options that change figures, without this machine's folders.
-std::string command_of(const Options& options) {
-    const auto name = [](const std::string& path) { return std::filesystem::path(path).filename().string(); };
-    std::string command = "./run bench format";
-    for (const std::string& file : options.files) command += " " + name(file);
-    for (const std::string& file : options.speed) command += " --speed " + name(file);
-    return command;
-}
-
 /// Two models a picture, next to the page.
 std::vector<std::string> write_plots(const Figures& figures, const std::filesystem::path& folder, bool& ok) {
     std::vector<std::string> names;
@@ -112,7 +103,7 @@ int main(int argc, char** argv) {
                 failed(file, sizes.error());
         }
     }
-    if (wants("speed")) {
+    if (wants("speed") && !options.speed.empty()) {
         figures.speeds_on = describe_machine();
         for (const std::string& file : options.speed) {
             fmt::print(stderr, "{}: speed\n", file);
@@ -130,7 +121,7 @@ int main(int argc, char** argv) {
     std::vector<std::string> plots;
     if (!options.markdown.empty())
         plots = write_plots(figures, std::filesystem::path(options.markdown).parent_path(), ok);
-    const std::string page = to_markdown(figures, plots, command_of(options));
+    const std::string page = to_markdown(figures, plots);
     fmt::print("{}", page);
     if (!options.markdown.empty()) ok = write(options.markdown, page) && ok;
     return ok ? 0 : 1;

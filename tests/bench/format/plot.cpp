@@ -44,7 +44,7 @@ std::vector<Series> series_of(const ModelSizes& model) {
         all.push_back(
             {i ? "quality profile" : "stream profile", colors[i], false, true, model.profiles[i].curve});
     Series own{"Draco, each level alone", "#555555", false, false, {}},
-        sum{"Draco, chain from the coarsest", "#555555", true, true, {}};
+        sum{"Draco, as a chain", "#555555", true, true, {}};
     std::uint64_t so_far = 0;
     const Profile& best = model.profiles.back();
     for (auto lod = best.lods.rbegin(); lod != best.lods.rend(); ++lod) {

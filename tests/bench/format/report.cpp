@@ -75,17 +75,22 @@ void add_sizes(std::vector<SummaryRow>& rows, const Figures& f) {
     whole("quality", 14, {2.0, 1.4});
     for (const char* profile : {"stream", "quality"}) {
         Ratios each;
+        int levels = 0, within = 0;
         for (const ModelSizes& m : f.sizes)
             for (const Profile& p : m.profiles)
                 for (const Lod& lod : p.lods)
-                    if (p.profile == profile)
-                        each.add(double(lod.reached) / double(lod.draco),
-                                 fmt::format("{}, {} triangles", m.model, lod.triangles));
+                    if (p.profile == profile) {
+                        const double ratio = double(lod.reached) / double(lod.draco);
+                        each.add(ratio, fmt::format("{}, {} triangles", m.model, lod.triangles));
+                        ++levels;
+                        within += ratio <= 2;
+                    }
         rows.push_back(
             row_of(fmt::format("bytes to reach the error of each of {} halving LODs over that LOD's "
                                "own Draco file, `{}`: geometric mean; the worst is judged",
                                kChain, profile),
-                   each.worst(), each.told(), {2.0, 1.5}));
+                   each.worst(), fmt::format("{}; {} of {} within the bar", each.told(), within, levels),
+                   {2.0, 1.5}));
     }
     for (const char* profile : {"stream", "quality"}) {
         const Ratios r = over_models(f, profile, 14, over_chain);
@@ -165,7 +170,8 @@ void write_lods(Out out, const Figures& f) {
         out,
         "\n## To the error of each level\n\nBytes of the 14-bit `.pmesh`, from its start, until its "
         "table promises the error that the level has in our record; the level's own file in Draco "
-        "(cl 10, qp 14; what its own rounding adds to the error is not counted); the ratio.\n\n| "
+        "(cl 10, qp 14; what its own rounding adds to the error is not counted); the ratio. A table promises "
+        "errors at the ends of blocks only, so up to a block, 48 KiB, less near the front, is in it.\n\n| "
         "model | profile |");
     for (int i = 0; i < kChain; ++i) fmt::format_to(out, " 1/{} |", 1 << i);
     fmt::format_to(out, "\n| --- | --- |");
@@ -196,12 +202,13 @@ void write_speeds(Out out, const Figures& f) {
 
 }  // namespace
 
-std::string to_markdown(const Figures& f, const std::vector<std::string>& plots, const std::string& command) {
+std::string to_markdown(const Figures& f, const std::vector<std::string>& plots) {
     std::string page;
     const Out out = std::back_inserter(page);
     fmt::format_to(out,
-                   "# The file's size and speed\n\nWritten by `{}`; do not edit.\n\n| | |\n| --- | --- |\n",
-                   command);
+                   "# The file's size and speed\n\nWritten by `./run bench format`; do not edit. Other "
+                   "models: `./run bench "
+                   "format MODEL... --speed MODEL`.\n\n| | |\n| --- | --- |\n");
     write_machine(out, "sizes", f.sizes_on);
     write_machine(out, "speed", f.speeds_on);
     fmt::format_to(out, "| Draco | {}, its library, edgebreaker, positions only |\n", draco_version());

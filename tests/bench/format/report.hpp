@@ -12,7 +12,6 @@
 namespace vsplit::bench {
 
 /// Markdown. `plots` are the names of the pictures next to it.
-std::string to_markdown(const Figures& figures, const std::vector<std::string>& plots,
-                        const std::string& command);
+std::string to_markdown(const Figures& figures, const std::vector<std::string>& plots);
 
 }  // namespace vsplit::bench
