@@ -31,6 +31,8 @@ constexpr std::size_t kSamples = 16000;
 constexpr std::size_t kMostPairs = 20'000;
 /// Triangles of the input around a collapse: of more, each sample searches its own.
 constexpr std::size_t kMostAround = 200;
+/// Of as many triangles a sample takes the nearest: no less than the distance, so a bound of it too.
+constexpr std::uint32_t kMostAsked = 400;
 /// Of a hub's triangles, about so many have samples: it has thousands, and as many collapses.
 constexpr std::size_t kMostFan = 100;
 
@@ -212,7 +214,8 @@ class Measurer {
         std::uint32_t guess = TriangleTree::kNoGuess;
         for (std::size_t i = 0; i < far.points.size(); ++i)
             if (far.distance2[i] > most) {
-                const auto hit = input_.tree.closest(far.points[i], guess, most, far.distance2[i]);
+                const auto hit =
+                    input_.tree.closest(far.points[i], guess, most, far.distance2[i], kMostAsked);
                 guess = hit.slot;
                 most = std::max(most, hit.distance2);
             }

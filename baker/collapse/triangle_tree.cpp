@@ -186,8 +186,8 @@ inline double TriangleTree::distance2(std::uint32_t slot, Double3 p) const {
     return distance2_to_triangle(p, to_double(t[0]), to_double(t[1]), to_double(t[2]));
 }
 
-TriangleTree::Hit TriangleTree::closest(Double3 point, std::uint32_t guess, double enough2,
-                                        double bound2) const {
+TriangleTree::Hit TriangleTree::closest(Double3 point, std::uint32_t guess, double enough2, double bound2,
+                                        std::uint32_t most) const {
     struct Entry {
         std::uint32_t node;
         double distance2;
@@ -199,11 +199,13 @@ TriangleTree::Hit TriangleTree::closest(Double3 point, std::uint32_t guess, doub
                       ? std::min(bound2, distance2(slot, point))
                       : bound2;
     stack[size++] = {0, box_distance2(nodes_[0], point)};
-    while (size && best > enough2) {
+    std::uint32_t seen = 0;
+    while (size && best > enough2 && seen < most) {
         const Entry entry = stack[--size];
         if (entry.distance2 >= best) continue;
         const Node& node = nodes_[entry.node];
         if (node.count) {
+            seen += node.count;
             for (std::uint32_t i = node.first; i < node.first + node.count; ++i)
                 if (const double d = distance2(i, point); d < best) {
                     best = d;

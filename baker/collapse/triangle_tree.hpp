@@ -38,8 +38,10 @@ class TriangleTree {
     /// guess (Hit::slot of a point nearby) only makes it faster. A triangle within `enough2` (squared) is
     /// good enough: the first found is returned. `bound2`, if the caller knows that something is that near,
     /// spares looking farther away: it is the distance if no triangle is nearer, and the triangle then any.
+    /// After about `most` triangles the nearest of them is taken: near a hub's axis thousands are as near.
     Hit closest(Double3 point, std::uint32_t guess = kNoGuess, double enough2 = 0,
-                double bound2 = std::numeric_limits<double>::infinity()) const;
+                double bound2 = std::numeric_limits<double>::infinity(),
+                std::uint32_t most = std::numeric_limits<std::uint32_t>::max()) const;
 
     /// Appends the triangles in the leaves whose boxes meet the box from `low` to `high`; false if they are
     /// more than `most`, and not all are there.
