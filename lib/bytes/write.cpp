@@ -3,6 +3,7 @@
 #include "vsplit/write.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <string>
 
 #include "checksum.hpp"
@@ -70,7 +71,9 @@ Result<Encoded> encode(const ProgressiveMesh& mesh, const WriteOptions& options)
     const auto may_be_rough = [](double tolerance) { return tolerance > 0; };
     if (std::any_of(numbers.birth_tolerance.begin(), numbers.birth_tolerance.end(), may_be_rough) ||
         std::any_of(numbers.move_tolerance.begin(), numbers.move_tolerance.end(), may_be_rough))
-        for (Sweep& sweep : sweeps) sweep.error *= 1 + static_cast<float>(kRoughShare);
+        for (Sweep& sweep : sweeps)
+            sweep.error = std::min(sweep.error * (1 + static_cast<float>(kRoughShare)),
+                                   std::numeric_limits<float>::max());
 
     // The first pass learns the weights of prediction.
     PlaceFit fit;

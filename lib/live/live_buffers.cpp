@@ -17,6 +17,8 @@ namespace {
 constexpr unsigned kCornerBits = 0x0f, kTriangleShift = 4, kTriangleBits = 3, kMoveBit = 0x40,
                    kSpecialBit = 0x80;
 constexpr std::size_t kInterval = 128;  // splits between checkpoints
+constexpr std::size_t kAhead = 32;      // corners between the one fetched and the one written
+constexpr std::size_t kFetched = 3;     // corners fetched a split: about as many as change
 constexpr std::size_t kAlways = 4;      // corners written without looking at how many there are
 constexpr std::size_t kChunk = 256;     // moves listed at a time
 
@@ -51,10 +53,10 @@ std::size_t bytes(const std::vector<T>& v) {
 template <bool kForward, std::size_t kComponents>
 void swap_values(std::span<const std::uint32_t> vertices, float* alive, float* moved,
                  std::size_t components) {
-    constexpr std::size_t kAhead = 12;
+    constexpr std::size_t kVerticesAhead = 12;
     const std::size_t n = kComponents != 0 ? kComponents : components;
     for (std::size_t i = 0; i < vertices.size(); ++i) {
-        if (i + kAhead < vertices.size()) prefetch(alive + n * vertices[i + kAhead]);
+        if (i + kVerticesAhead < vertices.size()) prefetch(alive + n * vertices[i + kVerticesAhead]);
         float* const a = alive + n * vertices[i];
         for (std::size_t k = 0; k < n; ++k) std::swap(a[k], moved[k]);
         if (kForward)
@@ -318,6 +320,9 @@ void LiveBuffers::patch(std::size_t level, const Ends& to) {
             continue;
         }
         const std::size_t count = code & kCornerBits;
+        if (std::size_t(end - change) >= kBytes * (kAhead + kFetched))
+            for (std::size_t k = kAhead; k < kAhead + kFetched; ++k)
+                prefetch(out + load<kBytes>(change + kBytes * k));
         if (std::size_t(end - change) >= kBytes * kAlways) {
             std::array<std::uint32_t, kAlways> corners;
             for (std::size_t k = 0; k < kAlways; ++k) corners[k] = load<kBytes>(change + kBytes * k);
@@ -352,6 +357,9 @@ void LiveBuffers::unpatch(std::size_t level, const Ends& to) {
         }
         const std::size_t count = code & kCornerBits;
         const std::uint32_t old = *--parent;
+        if (std::size_t(change - end) >= kBytes * (kAhead + kFetched))
+            for (std::size_t k = kAhead; k < kAhead + kFetched; ++k)
+                prefetch(out + load<kBytes>(change - kBytes * (k + 1)));
         if (std::size_t(change - end) >= kBytes * kAlways) {
             std::array<std::uint32_t, kAlways> corners;
             for (std::size_t k = 0; k < kAlways; ++k) corners[k] = load<kBytes>(change - kBytes * (k + 1));

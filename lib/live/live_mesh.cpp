@@ -5,25 +5,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "exchange.hpp"
+
 namespace vsplit {
-namespace {
-
-/// Exchanges a move's values with the buffers': refining stores the coarser values where the finer ones were,
-/// and back.
-void exchange(ProgressiveMesh& mesh, std::size_t index) {
-    VertexMove& move = mesh.moves[index];
-    std::swap(mesh.positions[move.vertex], move.position);
-    if (!mesh.weights.empty()) std::swap(mesh.weights[move.vertex], move.weight);
-    for (std::size_t i = 0; i < mesh.attributes.size(); ++i) {
-        const std::size_t components = mesh.attributes[i].components;
-        std::swap_ranges(mesh.moved_values[i].begin() + std::ptrdiff_t(components * index),
-                         mesh.moved_values[i].begin() + std::ptrdiff_t(components * (index + 1)),
-                         mesh.attributes[i].values.begin() + std::ptrdiff_t(components * move.vertex));
-    }
-}
-
-}  // namespace
-
 LiveMesh::LiveMesh(ProgressiveMesh mesh) : mesh_(std::move(mesh)) {}
 
 void LiveMesh::refine() {
@@ -34,7 +18,7 @@ void LiveMesh::refine() {
         const CornerChange& change = mesh_.corner_changes[i];
         mesh_.triangles[change.corner / 3][change.corner % 3] = change.vertex;
     }
-    for (std::uint32_t i = moves; i < split.moves_end; ++i) exchange(mesh_, i);
+    for (std::uint32_t i = moves; i < split.moves_end; ++i) exchange_move(mesh_, i);
     ++level_;
 }
 
@@ -43,7 +27,7 @@ void LiveMesh::coarsen() {
     const Split& split = mesh_.splits[level_];
     const std::uint32_t corners = level_ == 0 ? 0 : mesh_.splits[level_ - 1].corners_end;
     const std::uint32_t moves = level_ == 0 ? 0 : mesh_.splits[level_ - 1].moves_end;
-    for (std::uint32_t i = split.moves_end; i-- > moves;) exchange(mesh_, i);
+    for (std::uint32_t i = split.moves_end; i-- > moves;) exchange_move(mesh_, i);
     for (std::uint32_t i = split.corners_end; i-- > corners;) {
         const CornerChange& change = mesh_.corner_changes[i];
         mesh_.triangles[change.corner / 3][change.corner % 3] = mesh_.parents[change.vertex];

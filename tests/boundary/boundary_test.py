@@ -18,7 +18,7 @@ INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*[<"]([^>"]+)[>"]', re.MULTILIN
 ROOMS = [
     # (pattern of the included path, folders that may, name)
     (re.compile(r'^CGAL/'), ('baker/surface/', 'baker/points/', 'tests/unit/surface_', 'tests/unit/points_', 'tests/bench/powercrust/', 'tests/bench/simplify/peer_cgal'), 'CGAL'),
-    (re.compile(r'(^|/)tiny_?gltf(_v3)?\.h$'), ('baker/gltf/', 'tests/unit/gltf_'), 'tinygltf'),
+    (re.compile(r'(^|/)tiny_?gltf(_v3)?\.h$'), ('baker/gltf/', 'tests/unit/gltf_', 'tests/bench/assets/scene'), 'tinygltf'),
     (re.compile(r'^OpenMesh/'), ('baker/collapse/', 'tests/unit/collapse_', 'tests/unit/meshes_', 'tests/bench/simplify/peer_openmesh'), 'OpenMesh'),
     (re.compile(r'^vtk[A-Z]'), ('viewer/desktop/', 'tests/bench/simplify/peer_vtk'), 'VTK'),
 ]

@@ -75,7 +75,10 @@ TEST_CASE("Law 1 on collapsed meshes: read back as written, every declared prefi
         REQUIRE(same_bytes(*back, *promised));
         const auto info = read_info(*bytes);
         REQUIRE(info.ok());
-        REQUIRE(info->base_error == float(error_at(record, 0)));
+        // Rounding places may add an eighth (formats/spec, Promises), and what is promised is what is read.
+        REQUIRE(info->base_error == float(error_at(*promised, 0)));
+        REQUIRE(double(info->base_error) >= error_at(record, 0));
+        REQUIRE(double(info->base_error) <= 1.125001 * error_at(record, 0));
         LiveMesh live(*back);
         REQUIRE(live.positions().size() == info->base_vertices);
         REQUIRE(live.triangles().size() == info->base_triangles);

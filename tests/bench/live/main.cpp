@@ -45,6 +45,7 @@ struct Figures {
     double jump_mean = 0, jump_worst = 0;  // ms
     double memory = 0;                     // over the indexed triangle list
     double decode = 0;                     // M vertices/s
+    double append = 0;                     // M vertices/s
     double corners = 0;                    // changed per split
 };
 
@@ -57,8 +58,8 @@ double median(std::vector<double> values) {
     return values[values.size() / 2];
 }
 
-/// Feeds the file's blocks one by one; the seconds that it took.
-Result<double> feed(std::span<const std::byte> file, LiveBuffers& live) {
+/// Feeds the file's blocks one by one; the seconds that it took, and those of them in LiveBuffers.
+Result<double> feed(std::span<const std::byte> file, LiveBuffers& live, double& appending) {
     const double start = cpu_seconds();
     auto decoder = BlockDecoder::begin(file);
     if (!decoder) return decoder.error();
@@ -67,7 +68,9 @@ Result<double> feed(std::span<const std::byte> file, LiveBuffers& live) {
     for (const BlockInfo& block : info.blocks) {
         const Status status = decoder->decode(file.subspan(block.offset, block.bytes));
         if (!status) return status.error();
+        const double decoded = cpu_seconds();
         live.append(decoder->mesh());
+        appending += cpu_seconds() - decoded;
     }
     return cpu_seconds() - start;
 }
@@ -92,27 +95,32 @@ bool right(LiveBuffers& live, std::span<const std::byte> file) {
     return true;
 }
 
-Result<Figures> measure(const Mesh& mesh, const Kind& kind) {
+Result<std::vector<std::byte>> bake_file(const Mesh& mesh, const Kind& kind) {
     bake::CollapseOptions options;
     options.placement = kind.placement;
     options.calibrate = false;  // errors are of no concern here
     const auto record = bake::collapse(mesh, options);
     if (!record) return record.error();
-    const auto file = write_progressive_mesh(record->mesh);
-    if (!file) return file.error();
+    return write_progressive_mesh(record->mesh);
+}
 
+Result<Figures> measure(std::span<const std::byte> file) {
     Figures f;
     LiveBuffers live;
     std::vector<double> decode;
+    double appending = 0;
+    const auto info = read_info(file);
+    if (!info) return info.error();
+    const double corners = info->corner_changes;
     for (int run = 0; run < 3; ++run) {
-        const auto seconds = feed(*file, live);
+        const auto seconds = feed(file, live, appending);
         if (!seconds) return seconds.error();
         decode.push_back(*seconds);
     }
-    if (!right(live, *file)) return Error{ErrorCode::kMalformed, "LiveBuffers and LiveMesh differ"};
+    if (!right(live, file)) return Error{ErrorCode::kMalformed, "LiveBuffers and LiveMesh differ"};
     const std::size_t splits = live.available();
     f.splits = splits;
-    f.corners = double(record->mesh.corner_changes.size()) / double(splits);
+    f.corners = corners / double(splits);
 
     std::vector<double> refine, coarsen;
     std::uint64_t seen = 0;
@@ -142,6 +150,7 @@ Result<Figures> measure(const Mesh& mesh, const Kind& kind) {
     f.refine = 1e-6 * double(splits) / median(refine);
     f.coarsen = 1e-6 * double(splits) / median(coarsen);
     f.memory = double(live.memory()) / double(plain);
+    f.append = 1e-6 * 3 * double(live.vertex_count()) / appending;
     f.decode = 1e-6 * double(live.vertex_count()) / median(decode);
     return f;
 }
@@ -150,23 +159,40 @@ Result<Figures> measure(const Mesh& mesh, const Kind& kind) {
 
 int main(int argc, char** argv) {
     std::vector<std::string> files;
-    std::string markdown;
+    std::string markdown, keep;
     CLI::App app("Speed and memory of the live buffers, on one thread.", "vsplit_bench_live");
-    app.add_option("file", files, "Meshes (default: nefertiti and igea-1m of the corpus)");
+    app.add_option("file", files,
+                   "Meshes, or .pmesh files as they are (default: nefertiti and igea-1m of the corpus)");
     app.add_option("--markdown", markdown, "Write the page to this file too");
+    app.add_option("--keep", keep, "Folder for what was baked, to measure it again without baking");
     CLI11_PARSE(app, argc, argv);
     const std::string corpus = VSPLIT_CORPUS;
     if (files.empty()) files = {corpus + "/meshes/nefertiti.obj", corpus + "/meshes/igea-1m.ply"};
 
     std::string rows, command = "vsplit_bench_live";
     bool failed = false;
+    const auto report = [&](const std::string& name, const std::string& kind, const Result<Figures>& f) {
+        if (!f) {
+            fmt::print(stderr, "{}, {}: {}\n", name, kind, f.error().describe());
+            failed = true;
+            return;
+        }
+        rows += fmt::format(
+            "| {} | {} | {} | {} | {:.2f} | {:.0f} | {:.0f} | {:.2f} | {:.2f} | {:.2f} | {:.2f} | {:.1f} |\n",
+            name, kind, f->triangles, f->splits, f->corners, f->refine, f->coarsen, f->jump_mean,
+            f->jump_worst, f->memory, f->decode, f->append);
+    };
     for (const std::string& path : files) {
         const std::string name = path.substr(path.rfind('/') + 1);
+        const std::string extension = name.substr(std::min(name.rfind('.'), name.size()));
         command += " " + name;
         const auto bytes = bake::read_file(path);
-        const auto input = bytes
-                               ? bake::parse_mesh(*bytes, name.substr(std::min(name.rfind('.'), name.size())))
-                               : Result<bake::MeshFile>(bytes.error());
+        if (bytes && extension == ".pmesh") {
+            report(name, "as baked", measure(*bytes));
+            continue;
+        }
+        const auto input =
+            bytes ? bake::parse_mesh(*bytes, extension) : Result<bake::MeshFile>(bytes.error());
         if (!input) {
             fmt::print(stderr, "{}: {}\n", path, input.error().describe());
             return 3;
@@ -179,17 +205,12 @@ int main(int argc, char** argv) {
                     normals.values.insert(normals.values.end(), {n.x, n.y, n.z});
                 mesh.attributes = {std::move(normals)};
             }
-            const auto f = measure(mesh, kind);
-            if (!f) {
-                fmt::print(stderr, "{}, {}: {}\n", name, kind.name, f.error().describe());
-                failed = true;
-                continue;
-            }
-            rows += fmt::format(
-                "| {} | {} | {} | {} | {:.2f} | {:.0f} | {:.0f} | {:.2f} | {:.2f} | {:.2f} | {:.2f} |\n",
-                name, kind.name, f->triangles, f->splits, f->corners, f->refine, f->coarsen, f->jump_mean,
-                f->jump_worst, f->memory, f->decode);
-            fmt::print(stderr, "{}, {}: done\n", name, kind.name);
+            const auto file = bake_file(mesh, kind);
+            report(name, kind.name, file ? measure(*file) : Result<Figures>(file.error()));
+            if (!file || keep.empty()) continue;
+            const std::string kept = keep + "/" + name + "." + kind.name + ".pmesh";
+            const Status written = bake::write_file(kept, *file, true);
+            if (!written) fmt::print(stderr, "{}: {}\n", kept, written.error().describe());
         }
     }
     const bench::Machine machine = bench::describe_machine();
@@ -200,16 +221,17 @@ int main(int argc, char** argv) {
         "over "
         "all levels, in calls of {} splits, each with its dirty ranges taken. Jump: {} random levels, each "
         "from the one before. Memory: LiveBuffers::memory() over 12 bytes a vertex, 12 a triangle and the "
-        "attributes. Decode: checksum, decoding, the rules and append(), median of 3.\n\n"
+        "attributes. Decode: checksum, decoding, the rules and append(), median of 3. Append: that part "
+        "alone.\n\n"
         "| mesh | record | triangles | splits | corners a split | refine, M splits/s | coarsen, M splits/s | "
         "jump, mean ms | "
-        "jump, worst ms | memory | decode, M vertices/s |\n"
-        "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n"
+        "jump, worst ms | memory | decode, M vertices/s | append, M vertices/s |\n"
+        "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n"
         "| bar (goal) | endpoint | | | | 40 (100) | 40 (100) | 5 (1) at 1 M triangles | 5 (1) at 1 M "
         "triangles | "
-        "1.7 (1.5) | 0.8 (2) |\n"
+        "1.7 (1.5) | 0.8 (2) | |\n"
         "| bar (goal) | optimal, normals | | | | 15 (40) | 15 (40) | 5 (1) at 1 M triangles | 5 (1) at 1 M "
-        "triangles | - | 0.8 (2) |\n{}",
+        "triangles | - | 0.8 (2) | |\n{}",
         command, machine.cpu, machine.compiler, machine.date, machine.commit, kRuns, kCall, kJumps, rows);
     fmt::print("{}", page);
     if (!markdown.empty()) {

@@ -56,8 +56,9 @@ Machine describe_machine() {
     const std::string git = "git -C '" VSPLIT_BENCH_SOURCE "' ";
     machine.commit = output_of(git + "rev-parse --short=10 HEAD 2>/dev/null");
     if (machine.commit.empty()) machine.commit = "unknown";
-    // The document that this run rewrites does not count.
-    if (!output_of(git + "status --porcelain --untracked-files=no -- . ':!docs/benchmarks.md' 2>/dev/null")
+    // What benchmarks write does not count.
+    if (!output_of(git + "status --porcelain --untracked-files=no -- . ':!docs/benchmarks.md' "
+                         "':!docs/*-bench.md' ':!docs/format-rd-*.svg' 2>/dev/null")
              .empty())
         machine.commit += " with changes";
     machine.cores = std::thread::hardware_concurrency();

@@ -15,28 +15,6 @@ namespace {
 
 const std::vector<double> kAll(kRatios.begin(), kRatios.end());
 
-/// Limits on one figure; `sign` is -1 where more is better.
-struct Limits {
-    double bar, goal;
-    int sign = 1;
-    const char* unit = "";
-    bool has_goal = true;
-};
-
-SummaryRow row_of(std::string figure, double value, const std::string& measured, const Limits& limits) {
-    const char* comparison = limits.sign > 0 ? "<=" : ">=";
-    SummaryRow row{std::move(figure), measured, fmt::format("{} {:g}{}", comparison, limits.bar, limits.unit),
-                   limits.has_goal ? fmt::format("{} {:g}{}", comparison, limits.goal, limits.unit) : "",
-                   "short"};
-    if (std::isnan(value))
-        row.verdict = "n/a";
-    else if (limits.sign * value <= limits.sign * limits.goal)
-        row.verdict = limits.has_goal ? "goal" : "bar";
-    else if (limits.sign * value <= limits.sign * limits.bar)
-        row.verdict = "bar";
-    return row;
-}
-
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 double over(double a, double b) {
