@@ -23,7 +23,7 @@ constexpr std::uint32_t kRegionVertices = 1 << 14;
 /// A round has an octave of costs, and more if that is less than this share of the vertices.
 constexpr std::uint32_t kRounds = 32;
 
-/// Clearly less than what a part's vanishing costs: two octaves, less than half a distance.
+/// Clearly less than what a part's vanishing costs: a quarter of it.
 constexpr Bucket kWellBelow = 2 * kBucketsPerOctave;
 
 double seconds_now() {
