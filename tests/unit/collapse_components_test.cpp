@@ -73,3 +73,35 @@ TEST_CASE("Components: screws vanish before what they sit on changes by more tha
         CHECK(parts == 1);
     }
 }
+
+TEST_CASE("Components: no large part vanishes because guards hold back another's small triangles") {
+    // A body like a chess board over a quarter of it, whose corners the strict guards keep, and a plain
+    // cover.
+    constexpr std::size_t kAcross = 60;
+    Mesh mesh = make_torus(120, int(kAcross));
+    std::size_t number = 0;
+    std::erase_if(mesh.triangles, [&](const Triangle&) {
+        const std::size_t cell = number++ / 2, along = cell / kAcross, across = cell % kAcross;
+        return along < 30 && (along + across) % 2 == 0;
+    });
+    mesh.groups.assign(mesh.triangles.size(), 0);
+    const std::size_t of_body = mesh.positions.size();
+    const std::vector<std::uint32_t> groups = mesh.groups;
+    mesh = join(mesh, scaled(make_sphere(60, 30), 0.25f));
+    mesh.groups = groups;
+    mesh.groups.resize(mesh.triangles.size(), 1);
+    bake::CollapseOptions options;
+    options.part_of.assign(of_body, 0);
+    options.part_of.resize(mesh.positions.size(), 1);
+    auto result = bake::collapse(mesh, options);
+    REQUIRE(result.ok());
+    LiveMesh live(result->mesh);
+    for (const double ratio : {0.1, 0.05, 0.02, 0.01}) {
+        live.go_to(level_for_triangles(result->mesh, std::uint64_t(ratio * double(mesh.triangles.size()))));
+        const Mesh level = live.snapshot();
+        std::size_t cover = 0;
+        for (const std::uint32_t group : level.groups) cover += group == 1;
+        CAPTURE(ratio, level.triangles.size(), cover);
+        CHECK(cover >= 4);
+    }
+}
