@@ -35,7 +35,42 @@ VSPLIT_CLONES void nearest_of(const Double3* corners, std::size_t triangles, con
     }
 }
 
+VSPLIT_CLONES std::size_t keep_far(const Mesh& mesh, const std::uint32_t* triangles,
+                                   std::size_t triangle_count, Double3* points, double* distance2,
+                                   std::size_t count, double enough2) {
+    for (std::size_t i = 0; i < triangle_count && count > 0; i += 4) {
+        Lanes3 place[3];
+        for (std::size_t lane = 0; lane < 4; ++lane) {
+            const Triangle& t = mesh.triangles[triangles[std::min(i + lane, triangle_count - 1)]];
+            for (std::size_t k = 0; k < 3; ++k) {
+                const Float3& p = mesh.positions[t[k]];
+                place[k].x[lane] = double(p.x);
+                place[k].y[lane] = double(p.y);
+                place[k].z[lane] = double(p.z);
+            }
+        }
+        const TriangleDistance<Lanes> four(place[0], place[1], place[2]);
+        std::size_t kept = 0;
+        for (std::size_t p = 0; p < count; ++p) {
+            const double found = std::min(distance2[p], least(four.squared(lanes(points[p]))));
+            points[kept] = points[p];
+            distance2[kept] = found;
+            kept += !(found <= enough2);
+        }
+        count = kept;
+    }
+    return count;
+}
+
 }  // namespace
+
+void FarPoints::drop_near(const Mesh& mesh, const std::vector<std::uint32_t>& triangles, double enough2) {
+    distance2.assign(points.size(), std::numeric_limits<double>::infinity());
+    const std::size_t left = keep_far(mesh, triangles.data(), triangles.size(), points.data(),
+                                      distance2.data(), points.size(), enough2);
+    points.resize(left);
+    distance2.resize(left);
+}
 
 void FanDistance::find() {
     found_.assign(points.size(), {lanes(std::numeric_limits<double>::infinity()), lanes(0)});

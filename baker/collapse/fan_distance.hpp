@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "vec.hpp"
+#include "vsplit/mesh.hpp"
 
 namespace vsplit::bake {
 
@@ -32,6 +33,16 @@ struct FanDistance {
 
   private:
     std::vector<Nearest> found_;
+};
+
+/// Points, each with the squared distance to the nearest of some triangles.
+struct FarPoints {
+    std::vector<Double3> points;
+    std::vector<double> distance2;
+
+    /// Drops the points within `enough2` (squared) of one of the triangles; sets the distances of the others,
+    /// which keep their order.
+    void drop_near(const Mesh& mesh, const std::vector<std::uint32_t>& triangles, double enough2);
 };
 
 }  // namespace vsplit::bake

@@ -10,6 +10,7 @@
 #include <limits>
 
 #include "fan_distance.hpp"
+#include "star_mesh.hpp"
 #include "tail.hpp"
 #include "triangle_tree.hpp"
 #include "unsplit.hpp"
@@ -17,8 +18,10 @@
 namespace vsplit::bake {
 namespace {
 
-/// Samples that are asked at once.
+/// Samples that are asked at once, at least, and per triangle of the input: the more, the closer together are
+/// those that follow each other.
 constexpr std::size_t kBatch = 1 << 15;
+constexpr double kBatchShare = 0.25;
 /// Samples below this share of the tail are near enough.
 constexpr double kNear = 0.5;
 /// On a level's triangles together, about, where it has so few that their middles are not enough.
@@ -35,19 +38,21 @@ Double3 to_double(const Float3& p) {
     return {double(p.x), double(p.y), double(p.z)};
 }
 
-Mesh full_mesh(const Unsplitter& walk) {
+/// The input, in the order of a tree over it.
+struct Input {
+    explicit Input(const ProgressiveMesh& record) : mesh(Unsplitter::full(record)), tree(mesh) {
+        number = tree.arrange(mesh);
+    }
     Mesh mesh;
-    mesh.positions.assign(walk.positions().begin(), walk.positions().end());
-    mesh.triangles.assign(walk.triangles().begin(), walk.triangles().end());
-    return mesh;
-}
+    TriangleTree tree;
+    std::vector<std::uint32_t> number;  // of each of the record's vertices, until Measurer has used it
+};
 
 class Measurer {
   public:
     explicit Measurer(const ProgressiveMesh& mesh)
-        : walk_(mesh),
-          full_(full_mesh(walk_)),
-          tree_(full_),
+        : input_(mesh),
+          walk_(mesh),
           first_(full_.triangles.size(), kNoVertex),
           next_(full_.positions.size(), kNoVertex),
           forth_(mesh.splits.size(), 0),
@@ -55,17 +60,20 @@ class Measurer {
           tail_(mesh.positions.size()) {
         std::vector<bool> seen(full_.positions.size(), false);
         for (std::uint32_t t = 0; t < full_.triangles.size(); ++t)
-            for (const std::uint32_t v : full_.triangles[t])
-                if (!seen[v]) {
+            for (const std::uint32_t corner : walk_.triangle(t))
+                if (const std::uint32_t v = input_.number[corner]; !seen[v]) {
                     seen[v] = true;
                     put(v, t);
                 }
+        std::vector<std::uint32_t>().swap(input_.number);
     }
 
     std::vector<float> run(const Progress& progress) {
         const std::size_t count = result_.size();
+        const std::size_t batch = std::max(kBatch, std::size_t(kBatchShare * double(full_.triangles.size())));
         while (walk_.splits_left() != 0) {
             const std::uint32_t split = walk_.step();
+            walk_.look_ahead([&](std::uint32_t t) { fetch_ahead(&first_[t]); });
             const std::size_t rank = count - 1 - split;
             gather();
             if (!fan_.empty() && !walk_.acts().empty()) {
@@ -73,7 +81,7 @@ class Measurer {
                     float(std::min(std::sqrt(follow_points()), double(std::numeric_limits<float>::max())));
                 add_samples(split, kNear * tail_.at(forth_, rank));
             }
-            if (samples_.size() >= kBatch || walk_.splits_left() == 0) {
+            if (samples_.size() >= batch || walk_.splits_left() == 0) {
                 ask();
                 if (progress && !progress("measure errors", double(rank + 1) / double(count))) return {};
             }
@@ -86,10 +94,10 @@ class Measurer {
     }
 
   private:
-    /// The samples of a split, up to where they end.
+    /// The samples of a split.
     struct Group {
-        std::size_t end;
-        std::uint32_t split;
+        std::uint32_t begin, end;
+        std::uint32_t split, place;  // place: of those of similar numbers the samples are close together
         float enough, distance;
     };
 
@@ -133,6 +141,7 @@ class Measurer {
     }
 
     void add_samples(std::uint32_t split, double enough) {
+        const auto begin = std::uint32_t(samples_.size());
         const auto add = [&](Double3 at) { samples_.push_back(at); };
         for (const std::uint32_t v : walk_.acts()) add(place(v));
         const std::size_t each = kSamples / std::max<std::size_t>(walk_.triangles().size(), 1);
@@ -159,21 +168,25 @@ class Measurer {
         std::sort(edges_.begin(), edges_.end());
         edges_.erase(std::unique(edges_.begin(), edges_.end()), edges_.end());
         for (const auto& [u, v] : edges_) add((place(u) + place(v)) * 0.5);
-        groups_.push_back({samples_.size(), split, float(enough), 0});
+        groups_.push_back({begin, std::uint32_t(samples_.size()), split,
+                           points_.empty() ? 0 : points_.front(), float(enough), 0});
     }
     bool acts(std::uint32_t v) const {
         return std::find(walk_.acts().begin(), walk_.acts().end(), v) != walk_.acts().end();
     }
 
     void ask() {
+        std::sort(groups_.begin(), groups_.end(), [](const Group& a, const Group& b) {
+            return a.place != b.place ? a.place < b.place : a.split < b.split;
+        });
         tbb::parallel_for(tbb::blocked_range<std::size_t>(0, groups_.size(), 64),
                           [&](const tbb::blocked_range<std::size_t>& range) {
-                              thread_local FanDistance near;
+                              thread_local FarPoints far;
                               thread_local std::vector<std::uint32_t> around;
                               for (std::size_t i = range.begin(); i < range.end(); ++i)
-                                  groups_[i].distance = float(std::min(
-                                      farthest(i == 0 ? 0 : groups_[i - 1].end, groups_[i], near, around),
-                                      double(std::numeric_limits<float>::max())));
+                                  groups_[i].distance =
+                                      float(std::min(farthest(groups_[i], far, around),
+                                                     double(std::numeric_limits<float>::max())));
                           });
         for (const Group& group : groups_) result_[group.split] = group.distance;
         groups_.clear();
@@ -181,13 +194,11 @@ class Measurer {
     }
 
     /// The largest distance from a group's samples to the input, if it is more than enough.
-    double farthest(std::size_t begin, const Group& group, FanDistance& near,
-                    std::vector<std::uint32_t>& around) const {
-        near.clear();
-        near.points.assign(samples_.begin() + std::ptrdiff_t(begin),
-                           samples_.begin() + std::ptrdiff_t(group.end));
-        Double3 low = near.points.front(), high = low;
-        for (const Double3 p : near.points) {
+    double farthest(const Group& group, FarPoints& far, std::vector<std::uint32_t>& around) const {
+        far.points.assign(samples_.begin() + std::ptrdiff_t(group.begin),
+                          samples_.begin() + std::ptrdiff_t(group.end));
+        Double3 low = far.points.front(), high = low;
+        for (const Double3 p : far.points) {
             low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
             high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
         }
@@ -195,29 +206,22 @@ class Measurer {
         const double enough = double(group.enough);
         const Double3 reach{enough, enough, enough};
         around.clear();
-        const bool few = tree_.overlapping(low - reach, high + reach, kMostAround, around);
-        if (few && !around.empty()) {
-            for (const std::uint32_t t : around)
-                for (const std::uint32_t v : full_.triangles[t])
-                    near.corners.push_back(to_double(full_.positions[v]));
-            near.find();
-        } else {
-            near.distance2.assign(near.points.size(), std::numeric_limits<double>::infinity());
-        }
         double most = enough * enough;
+        if (!input_.tree.overlapping(low - reach, high + reach, kMostAround, around)) around.clear();
+        far.drop_near(full_, around, most);
         std::uint32_t guess = TriangleTree::kNoGuess;
-        for (std::size_t i = 0; i < near.points.size(); ++i)
-            if (near.distance2[i] > most) {
-                const auto hit = tree_.closest(near.points[i], guess, most);
+        for (std::size_t i = 0; i < far.points.size(); ++i)
+            if (far.distance2[i] > most) {
+                const auto hit = input_.tree.closest(far.points[i], guess, most, far.distance2[i]);
                 guess = hit.slot;
                 most = std::max(most, hit.distance2);
             }
         return std::sqrt(most);
     }
 
+    Input input_;
+    const Mesh& full_ = input_.mesh;
     Unsplitter walk_;
-    Mesh full_;
-    TriangleTree tree_;
     std::vector<std::uint32_t> first_, next_;  // chains of input vertices, one a triangle
     std::vector<float> forth_;                 // first collapse first
     std::vector<float> result_;

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "triangle_distance.hpp"
+#include "vsplit/progressive_mesh.hpp"
 
 namespace vsplit::bake {
 namespace {
@@ -84,6 +85,30 @@ TriangleTree::TriangleTree(const Mesh& mesh) : mesh_(mesh) {
     }
 }
 
+std::vector<std::uint32_t> TriangleTree::arrange(Mesh& mesh) {
+    std::vector<std::uint32_t> number(mesh.positions.size(), kNoVertex);
+    std::vector<Float3> positions;
+    positions.reserve(mesh.positions.size());
+    {
+        std::vector<Triangle> triangles;
+        triangles.reserve(order_.size());
+        for (const std::uint32_t t : order_) {
+            triangles.push_back(mesh.triangles[t]);
+            for (std::uint32_t& v : triangles.back()) {
+                if (number[v] == kNoVertex) {
+                    number[v] = std::uint32_t(positions.size());
+                    positions.push_back(mesh.positions[v]);
+                }
+                v = number[v];
+            }
+        }
+        mesh.triangles.swap(triangles);
+    }
+    mesh.positions.swap(positions);
+    std::vector<std::uint32_t>().swap(order_);
+    return number;
+}
+
 /// Sets the node's box; returns the bounds of the centres.
 void TriangleTree::fit(Node& node, const std::vector<Box>& boxes, std::array<float, 3>& low,
                        std::array<float, 3>& high) const {
@@ -156,7 +181,7 @@ inline double TriangleTree::box_distance2(const Node& node, Double3 p) const {
 }
 
 inline double TriangleTree::distance2(std::uint32_t slot, Double3 p) const {
-    const Triangle& c = mesh_.triangles[order_[slot]];
+    const Triangle& c = mesh_.triangles[triangle_at(slot)];
     const Float3 t[3] = {mesh_.positions[c[0]], mesh_.positions[c[1]], mesh_.positions[c[2]]};
     return distance2_to_triangle(p, to_double(t[0]), to_double(t[1]), to_double(t[2]));
 }
@@ -169,8 +194,8 @@ TriangleTree::Hit TriangleTree::closest(Double3 point, std::uint32_t guess, doub
     };
     Entry stack[kStack];
     int size = 0;
-    std::uint32_t slot = guess < order_.size() ? guess : 0;
-    double best = guess < order_.size() || !(bound2 < std::numeric_limits<double>::infinity())
+    std::uint32_t slot = guess < mesh_.triangles.size() ? guess : 0;
+    double best = guess < mesh_.triangles.size() || !(bound2 < std::numeric_limits<double>::infinity())
                       ? std::min(bound2, distance2(slot, point))
                       : bound2;
     stack[size++] = {0, box_distance2(nodes_[0], point)};
@@ -192,7 +217,7 @@ TriangleTree::Hit TriangleTree::closest(Double3 point, std::uint32_t guess, doub
         if (far.distance2 < best) stack[size++] = far;
         if (near.distance2 < best) stack[size++] = near;
     }
-    return {best, order_[slot], slot};
+    return {best, triangle_at(slot), slot};
 }
 
 bool TriangleTree::overlapping(Double3 low, Double3 high, std::size_t most,
@@ -214,7 +239,7 @@ bool TriangleTree::overlapping(Double3 low, Double3 high, std::size_t most,
             continue;
         }
         if (out.size() + node.count > most) return false;
-        out.insert(out.end(), order_.begin() + node.first, order_.begin() + node.first + node.count);
+        for (std::uint32_t i = node.first; i < node.first + node.count; ++i) out.push_back(triangle_at(i));
     }
     return true;
 }

@@ -29,6 +29,11 @@ class TriangleTree {
     /// `mesh` has a triangle, its corners exist and are finite. Runs on the calling thread alone.
     explicit TriangleTree(const Mesh& mesh);
 
+    /// Puts the tree's own mesh in the order of its leaves, triangles and vertices: what is asked for
+    /// together lies together, and slots are the triangles' numbers. Returns the new number of each vertex;
+    /// one that no triangle has goes, and has kNoVertex.
+    std::vector<std::uint32_t> arrange(Mesh& mesh);
+
     /// The closest triangle; of several at the same distance any, but always the same for the same guess. A
     /// guess (Hit::slot of a point nearby) only makes it faster. A triangle within `enough2` (squared) is
     /// good enough: the first found is returned. `bound2`, if the caller knows that something is that near,
@@ -57,9 +62,10 @@ class TriangleTree {
     std::uint32_t split(const Node& node, const std::vector<Box>& boxes, int axis, float low, float extent);
     double box_distance2(const Node& node, Double3 p) const;
     double distance2(std::uint32_t slot, Double3 p) const;
+    std::uint32_t triangle_at(std::uint32_t slot) const { return order_.empty() ? slot : order_[slot]; }
 
     std::vector<Node> nodes_;
-    std::vector<std::uint32_t> order_;  ///< Leaf order -> mesh order.
+    std::vector<std::uint32_t> order_;  ///< Leaf order -> mesh order; none once they are the same.
     const Mesh& mesh_;
 };
 

@@ -25,6 +25,16 @@ Unsplitter::Unsplitter(const ProgressiveMesh& mesh)
         for (std::uint32_t k = 0; k < 3; ++k) link(3 * t + k, corners_[t][k]);
 }
 
+Mesh Unsplitter::full(const ProgressiveMesh& mesh) {
+    Mesh result;
+    result.positions = mesh.positions;
+    result.triangles = mesh.triangles;
+    for (const VertexMove& move : mesh.moves) result.positions[move.vertex] = move.position;
+    for (const CornerChange& change : mesh.corner_changes)
+        result.triangles[change.corner / 3][change.corner % 3] = change.vertex;
+    return result;
+}
+
 std::uint32_t Unsplitter::step() {
     const Split& split = mesh_.splits[--left_];
     const std::uint32_t changes = left_ == 0 ? 0 : mesh_.splits[left_ - 1].corners_end,

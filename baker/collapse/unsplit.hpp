@@ -4,10 +4,12 @@
 // The collapses of a progressive mesh once more, one by one, with the stars around them.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "star_mesh.hpp"
 #include "vsplit/progressive_mesh.hpp"
 
 namespace vsplit::bake {
@@ -17,6 +19,9 @@ namespace vsplit::bake {
 class Unsplitter {
   public:
     explicit Unsplitter(const ProgressiveMesh& mesh);
+
+    /// The full mesh.
+    static Mesh full(const ProgressiveMesh& mesh);
 
     /// Undoes the last split; there must be one. Returns its number.
     std::uint32_t step();
@@ -51,7 +56,28 @@ class Unsplitter {
         }
     }
 
+    /// Asks for the memory of a step that comes soon; visits triangles that it changes.
+    template <class Visit>
+    void look_ahead(const Visit& visit) const {
+        if (left_ <= 2 * kAhead) return;
+        for (std::uint32_t v = positions_end(left_ - 2 * kAhead); v < positions_end(left_ - 2 * kAhead + 1);
+             ++v)
+            if (mesh_.parents[v] != kNoVertex) {
+                fetch_ahead(&first_[mesh_.parents[v]]);
+                fetch_ahead(&positions_[mesh_.parents[v]]);
+            }
+        const std::uint32_t soon = left_ - kAhead, begin = mesh_.splits[soon - 1].corners_end;
+        for (std::uint32_t i = begin; i < std::min(mesh_.splits[soon].corners_end, begin + kMostAhead); ++i) {
+            const std::uint32_t t = mesh_.corner_changes[i].corner / 3;
+            fetch_ahead(&corners_[t]);
+            fetch_ahead(&next_[3 * t]);
+            visit(t);
+        }
+    }
+
   private:
+    static constexpr std::uint32_t kAhead = 6, kMostAhead = 8;
+
     std::uint32_t positions_end(std::uint32_t split) const {
         return split == 0 ? mesh_.base_vertices : mesh_.splits[split - 1].vertices_end;
     }
