@@ -23,6 +23,9 @@ constexpr std::uint32_t kRegionVertices = 1 << 14;
 /// A round has an octave of costs, and more if that is less than this share of the vertices.
 constexpr std::uint32_t kRounds = 32;
 
+/// Clearly less than what a part's vanishing costs: a quarter of it.
+constexpr Bucket kWellBelow = 2 * kBucketsPerOctave;
+
 double seconds_now() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
@@ -33,10 +36,11 @@ Float3 to_float(Double3 p) {
 
 }  // namespace
 
-CollapseState::CollapseState(StarMesh&& stars, const CollapseOptions& chosen)
+CollapseState::CollapseState(StarMesh&& stars, const CollapseOptions& chosen,
+                             std::span<const std::uint32_t> part_of)
     : options(chosen),
       mesh(std::move(stars)),
-      components(mesh),
+      components(mesh, part_of),
       // Cost `paper` has no limit on the deviation that would hold back what turns a triangle far.
       strictness{chosen.cost == Cost::kPaper ? std::max(chosen.min_normal_cosine, kPaperCosine)
                                              : chosen.min_normal_cosine,
@@ -46,10 +50,10 @@ CollapseState::CollapseState(StarMesh&& stars, const CollapseOptions& chosen)
       slots(mesh.vertex_count() + std::size_t{components.count()}, kNoBucket) {}
 
 CollapseState::CollapseState(const Mesh& source, const CollapseOptions& chosen)
-    : CollapseState(StarMesh(source), chosen) {}
+    : CollapseState(StarMesh(source), chosen, {}) {}
 
 CollapseState::CollapseState(const PointMesh& points, const Mesh& input, const CollapseOptions& chosen)
-    : CollapseState(StarMesh(points.mesh, points.corners, points.groups), chosen) {
+    : CollapseState(StarMesh(points.mesh, points.corners, points.groups), chosen, points.part_of) {
     wedges = std::make_unique<WedgeValues>(input, chosen.attribute_weights);
 }
 
@@ -171,16 +175,11 @@ void Collapser::price_all() {
                           }
                       });
     for (std::uint32_t c = 0; c < state_.components.count(); ++c)
-        if (state_.components.may_vanish(c)) {
-            const double reach = state_.components.reach(c);
-            const double limit = state_.paper ? reach
-                                              : std::max(state_.options.deviation_limit, 1.0) * reach *
-                                                    reach * reach * reach * reach;
-            state_.slots[state_.mesh.vertex_count() + c] = bucket_of(float(limit));
-        }
+        if (state_.components.may_vanish(c))
+            state_.slots[state_.mesh.vertex_count() + c] = bucket_of(vanishing_cost(state_, c));
 }
 
-std::pair<Bucket, Bucket> Collapser::next_window() const {
+std::pair<Bucket, Bucket> Collapser::next_window(Bucket limit) const {
     std::vector<std::uint32_t> waiting(kBuckets, 0);
     const auto count_one = [&](std::uint32_t item) {
         if (state_.slots[item] != kNoBucket) ++waiting[state_.slots[item]];
@@ -188,11 +187,10 @@ std::pair<Bucket, Bucket> Collapser::next_window() const {
     for (const std::uint32_t v : alive_) count_one(v);
     for (std::uint32_t c = state_.mesh.vertex_count(); c < state_.slots.size(); ++c) count_one(c);
     Bucket begin = 0;
-    while (begin < kBuckets && waiting[begin] == 0) ++begin;
+    while (begin < limit && waiting[begin] == 0) ++begin;
     std::uint32_t count = 0;
     Bucket end = begin;
-    while (end < kBuckets &&
-           (end < begin + kBucketsPerOctave || count < state_.mesh.live_vertices() / kRounds))
+    while (end < limit && (end < begin + kBucketsPerOctave || count < state_.mesh.live_vertices() / kRounds))
         count += waiting[end++];
     return {begin, end};
 }
@@ -257,6 +255,32 @@ bool Collapser::round(Bucket begin, Bucket end, std::uint64_t number, const Betw
     return true;
 }
 
+Bucket Collapser::next_component() const {
+    const auto first = state_.slots.begin() + std::ptrdiff_t(state_.mesh.vertex_count());
+    return first == state_.slots.end() ? kNoBucket : *std::min_element(first, state_.slots.end());
+}
+
+void Collapser::retry_all() {
+    for (std::uint32_t v = 0; v < state_.mesh.vertex_count(); ++v)
+        if (state_.mesh.kind(v) != VertexKind::kDead) {
+            state_.targets[v].vertex = kNoVertex;
+            state_.slots[v] = 0;
+        }
+}
+
+template <class Between>
+bool Collapser::rounds(Bucket limit, const Between& between) {
+    const StarMesh& mesh = state_.mesh;
+    for (;; ++rounds_) {
+        if (alive_.size() > 2 * std::size_t{mesh.live_vertices()})
+            std::erase_if(alive_, [&](std::uint32_t v) { return mesh.kind(v) == VertexKind::kDead; });
+        const auto [begin, end] = next_window(limit);
+        if (begin == end) return true;
+        state_.mean_star = 12 * state_.area / std::max(mesh.live_triangles(), 1u);
+        if (!between() || !round(begin, end, rounds_, between)) return false;
+    }
+}
+
 bool Collapser::run(const Progress& progress) {
     StarMesh& mesh = state_.mesh;
     if (mesh.triangle_count() == 0) return true;
@@ -278,25 +302,30 @@ bool Collapser::run(const Progress& progress) {
         state_.strictness, {0.0, 1e-3, kHub, false, true}, {-0.2, 1e-5, 2 * kHub, false, true}};
     // Parts with seams get stuck in more ways; there the last pass only asks for triangles with an area.
     if (mesh.has_wedges()) passes.push_back({-1, 0, 2 * kHub, false, false});
-    std::uint64_t number = 0;
+    if (mesh.has_wedges() && !state_.paper) {
+        // What a guard holds back of other parts may be cheaper than a whole part: before one vanishes, the
+        // last guards let through what costs clearly less.
+        std::uint32_t asked = std::numeric_limits<std::uint32_t>::max();
+        for (Bucket due = 0; (due = next_component()) < kBuckets;) {
+            if (!rounds(due, between)) return false;
+            // Again only when a tenth has gone: each time, all edges are priced anew.
+            if (next_component() == due && due > kWellBelow && mesh.live_triangles() < 0.9 * asked) {
+                asked = mesh.live_triangles();
+                state_.strictness = passes.back();
+                retry_all();
+                if (!rounds(Bucket(due - kWellBelow), between)) return false;
+                state_.strictness = passes.front();
+            }
+            if (!rounds(Bucket(due + 1), between)) return false;
+        }
+    }
     for (const Strictness& strictness : passes) {
         state_.strictness = strictness;
         if (&strictness != passes.data()) {
             if (mesh.live_vertices() <= 64) break;
-            for (std::uint32_t v = 0; v < mesh.vertex_count(); ++v)
-                if (mesh.kind(v) != VertexKind::kDead) {
-                    state_.targets[v].vertex = kNoVertex;
-                    state_.slots[v] = 0;
-                }
+            retry_all();
         }
-        for (;; ++number) {
-            if (alive_.size() > 2 * std::size_t{mesh.live_vertices()})
-                std::erase_if(alive_, [&](std::uint32_t v) { return mesh.kind(v) == VertexKind::kDead; });
-            const auto [begin, end] = next_window();
-            if (begin == end) break;
-            state_.mean_star = 12 * state_.area / std::max(mesh.live_triangles(), 1u);
-            if (!between() || !round(begin, end, number, between)) return false;
-        }
+        if (!rounds(kBuckets, between)) return false;
     }
     return true;
 }

@@ -32,8 +32,15 @@ class Collapser {
     /// Collapses what waits in the window; false if `between` asked to stop.
     template <class Between>
     bool round(Bucket begin, Bucket end, std::uint64_t number, const Between& between);
-    /// The window of the next round; empty at the end.
-    std::pair<Bucket, Bucket> next_window() const;
+    /// The window of the next round, below `limit`; empty at the end.
+    std::pair<Bucket, Bucket> next_window(Bucket limit) const;
+    /// The least bucket in which a component waits.
+    Bucket next_component() const;
+    /// Lines up all edges anew, for other guards.
+    void retry_all();
+    /// Rounds until nothing waits below `limit`; false if `between` asked to stop.
+    template <class Between>
+    bool rounds(Bucket limit, const Between& between);
     void take(const Region& region);
 
     CollapseState state_;
@@ -41,7 +48,7 @@ class Collapser {
     Record record_;
     WedgeRecord wedge_record_;
     std::vector<std::uint32_t> alive_;  // vertices, ascending; up to as many dead ones among them
-    std::uint64_t vanished_ = 0;
+    std::uint64_t vanished_ = 0, rounds_ = 0;
     std::uint64_t unused_vertices_ = 0;
 };
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 #include <numeric>
+#include <unordered_map>
 
 namespace vsplit::bake {
 namespace {
@@ -28,7 +29,7 @@ double gap(const Box& a, const Box& b) {
 
 }  // namespace
 
-Components::Components(const StarMesh& mesh) {
+Components::Components(const StarMesh& mesh, std::span<const std::uint32_t> part_of) {
     const std::uint32_t vertices = mesh.vertex_count();
     std::vector<std::uint32_t> roots(vertices);
     std::iota(roots.begin(), roots.end(), 0u);
@@ -81,12 +82,19 @@ Components::Components(const StarMesh& mesh) {
         return boxes[a].diagonal() > boxes[b].diagonal();
     });
     constexpr std::size_t kAsked = 4096;
-    for (std::size_t i = 0; i < by_size.size(); ++i) {
+    const auto part = [&](std::uint32_t c) {
+        return part_of.empty() ? 0u : part_of[mesh.input_vertices()[members_[first_[c]]]];
+    };
+    std::unordered_map<std::uint32_t, std::vector<std::uint32_t>> larger;  // of each part
+    for (const std::uint32_t c : by_size) {
+        std::vector<std::uint32_t>& asked = larger[part(c)];
+        const double half = 0.5 * boxes[c].diagonal();
         double nearest = std::numeric_limits<double>::infinity();
-        for (std::size_t j = 0; j < std::min(i, kAsked) && nearest > 0; ++j)
-            nearest = std::min(nearest, gap(boxes[by_size[i]], boxes[by_size[j]]));
-        reach_[by_size[i]] =
-            0.5 * boxes[by_size[i]].diagonal() + (i == 0 ? boxes[by_size[0]].diagonal() : nearest);
+        for (std::size_t j = 0; j < asked.size() && nearest > 0; ++j)
+            nearest = std::min(nearest, gap(boxes[c], boxes[asked[j]]));
+        if (asked.empty()) nearest = part_of.empty() ? 2 * half : half;
+        reach_[c] = half + nearest;
+        if (asked.size() < kAsked) asked.push_back(c);
     }
 }
 

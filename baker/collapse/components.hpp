@@ -6,6 +6,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "star_mesh.hpp"
@@ -18,7 +19,8 @@ class Components {
     /// back. Four times as many of a mesh with attributes.
     static constexpr std::uint32_t kMaxVanishing = 64;
 
-    explicit Components(const StarMesh& mesh);
+    /// `part_of`: empty, or one per vertex of the input; distances between different parts mean nothing.
+    Components(const StarMesh& mesh, std::span<const std::uint32_t> part_of);
 
     std::uint32_t count() const { return static_cast<std::uint32_t>(triangles_.size()); }
     std::uint32_t of(std::uint32_t vertex) const { return component_[vertex]; }
@@ -29,7 +31,7 @@ class Components {
     }
 
     /// How far its points may be from the rest of the mesh, working units: its extent and the gap to the
-    /// nearest larger part.
+    /// nearest larger one. Of the largest of a scene's part, which others hold in some place: its diagonal.
     double reach(std::uint32_t component) const { return reach_[component]; }
     /// The last part never vanishes, nor one with a fixed vertex or painted weight above 1.
     bool may_vanish(std::uint32_t component) const { return alive_ > 1 && !kept_[component]; }

@@ -35,6 +35,15 @@ void visit_neighbours(const StarMesh& mesh, std::uint32_t v, std::vector<Neighbo
 
 }  // namespace
 
+float vanishing_cost(const CollapseState& state, std::uint32_t component) {
+    const double reach = state.components.reach(component), cube = reach * reach * reach;
+    if (state.paper) return float(reach);
+    // Not before other collapses deviate as far; and what is large against the triangles of the time is
+    // kept for longer still.
+    return float(std::max(std::max(state.options.deviation_limit, 1.0) * cube * reach * reach,
+                          state.options.deviation_limit * cube * state.mean_star));
+}
+
 void Region::open(std::uint32_t low, std::uint32_t high, Bucket begin, Bucket end, std::size_t room) {
     room_ = room;
     low_ = low;
@@ -433,6 +442,8 @@ void Region::process(std::uint32_t u, Bucket bucket) {
 
 void Region::process_component(std::uint32_t component, Bucket bucket) {
     if (!state_.components.may_vanish(component)) return;
+    if (const Bucket due = bucket_of(vanishing_cost(state_, component)); due > bucket)
+        return queue_.push(mesh_.vertex_count() + component, due);
     flush();
     // Parts with seams get stuck at more triangles than plain ones.
     const std::uint32_t most = Components::kMaxVanishing * (mesh_.has_wedges() ? 4 : 1);

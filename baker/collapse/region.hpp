@@ -7,6 +7,7 @@
 
 #include <limits>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "components.hpp"
@@ -47,7 +48,7 @@ struct Target {
 struct CollapseState {
     CollapseState(const Mesh& mesh, const CollapseOptions& options);
     /// Of a mesh with attributes or groups; `input` is the one that `points` was made of.
-    CollapseState(StarMesh&& stars, const CollapseOptions& options);
+    CollapseState(StarMesh&& stars, const CollapseOptions& options, std::span<const std::uint32_t> part_of);
     CollapseState(const PointMesh& points, const Mesh& input, const CollapseOptions& options);
 
     const CollapseOptions& options;
@@ -64,6 +65,9 @@ struct CollapseState {
     std::vector<Target> targets;  ///< kNoVertex: list all again.
     std::vector<Bucket> slots;    ///< Where each vertex waits, then each component.
 };
+
+/// What it costs now that a component vanishes, working units.
+float vanishing_cost(const CollapseState& state, std::uint32_t component);
 
 /// Collapses the edges of a range of vertices. Touches and reads nothing beyond, so that regions that share
 /// no vertex may run at once: a vertex whose edge has neighbours elsewhere is put off.

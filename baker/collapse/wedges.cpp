@@ -249,6 +249,7 @@ PointMesh points_of(const Mesh& mesh, std::span<const std::uint32_t> part_of) {
         if (first[v] == v) {
             point[v] = std::uint32_t(out.mesh.positions.size());
             out.mesh.positions.push_back(mesh.positions[v]);
+            if (!part_of.empty()) out.part_of.push_back(part_of[v]);
             if (!mesh.weights.empty()) out.mesh.weights.push_back(mesh.weights[v]);
         } else {
             point[v] = point[first[v]];

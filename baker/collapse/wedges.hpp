@@ -76,11 +76,12 @@ class WedgeValues {
 
 /// A mesh of points, and the wedges at its corners.
 struct PointMesh {
-    Mesh mesh;                          ///< Positions and weights of points; triangles over them.
-    std::vector<Triangle> corners;      ///< Parallel to its triangles: the wedges, vertices of the input.
-    std::vector<std::uint32_t> groups;  ///< Parallel to its triangles; empty if the input has none.
-    std::uint64_t degenerate = 0;       ///< Triangles of the input with two corners at one point: left out.
-    std::uint64_t unused = 0;           ///< Vertices of the input that no triangle left uses.
+    Mesh mesh;                           ///< Positions and weights of points; triangles over them.
+    std::vector<Triangle> corners;       ///< Parallel to its triangles: the wedges, vertices of the input.
+    std::vector<std::uint32_t> groups;   ///< Parallel to its triangles; empty if the input has none.
+    std::vector<std::uint32_t> part_of;  ///< Of each point; empty if the input has no parts.
+    std::uint64_t degenerate = 0;        ///< Triangles of the input with two corners at one point: left out.
+    std::uint64_t unused = 0;            ///< Vertices of the input that no triangle left uses.
 };
 
 /// Wedges with bitwise equal positions (0 and -0 being equal) and the same part share a point, whose weight

@@ -169,12 +169,14 @@ FileServer::FileServer(Folder folder, ServerOptions options)
 }
 
 void FileServer::stop_gently(std::chrono::milliseconds grace) {
+    // Connections that come meanwhile are closed unheard. httplib itself is told at the end only: from then
+    // on it begins no body, not even of a response whose headers are out.
     stopping_ = 1;
-    stop();
     for (auto left = grace; left.count() > 0 && busy_ > 0 && stopping_ == 1;
          left -= std::chrono::milliseconds(20))
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
     stopping_ = 2;
+    stop();
 }
 void FileServer::stop_hard() {
     stopping_ = 2;
@@ -255,7 +257,7 @@ void FileServer::answer(const httplib::Request& request, httplib::Response& resp
     response.set_header(
         "Content-Security-Policy",
         "default-src 'self'; connect-src 'self' blob: data:; style-src 'self' 'unsafe-inline'; "
-                        "script-src 'self' 'wasm-unsafe-eval'; worker-src 'self' blob:; img-src 'self' data: blob:");
+        "script-src 'self' 'wasm-unsafe-eval'; worker-src 'self' blob:; img-src 'self' data: blob:");
     response.status = 200;
     response.set_content(listing_page(folder_, path), "text/html; charset=utf-8");
 }
