@@ -7,6 +7,7 @@
 
 #include "collapse/triangle_distance.hpp"
 #include "collapse/triangle_tree.hpp"
+#include "vsplit/progressive_mesh.hpp"
 
 using namespace vsplit;
 using namespace vsplit::bake;
@@ -68,5 +69,30 @@ TEST_CASE("closest triangles are those that looking at all of them finds, whatev
         const double near = tree.closest(p, TriangleTree::kNoGuess, 2 * least, 100).distance2;
         REQUIRE(near >= least);
         REQUIRE(near <= 2 * least);
+        // Of the first few it is the nearest, which is one of the mesh's.
+        const auto few = tree.closest(p, TriangleTree::kNoGuess, 0, infinity, 4);
+        REQUIRE(few.distance2 >= least);
+        REQUIRE(few.distance2 == to(few.triangle));
+    }
+}
+
+TEST_CASE("a tree in the order of its leaves finds the same", "[collapse][tree]") {
+    const Mesh mesh = soup(700);
+    const TriangleTree tree(mesh);
+    Mesh arranged = mesh;
+    arranged.positions.push_back({9, 9, 9});  // of no triangle
+    TriangleTree other(arranged);
+    const std::vector<std::uint32_t> number = other.arrange(arranged);
+    REQUIRE(number.size() == mesh.positions.size() + 1);
+    REQUIRE(number.back() == kNoVertex);
+    REQUIRE(arranged.triangles.size() == mesh.triangles.size());
+    for (int i = -10; i <= 10; ++i) {
+        const Double3 p{0.1 * i, 0.3, -0.07 * i};
+        const auto here = tree.closest(p), there = other.closest(p);
+        REQUIRE(there.distance2 == here.distance2);
+        REQUIRE(there.triangle == there.slot);
+        const Triangle& a = mesh.triangles[here.triangle];
+        const Triangle& b = arranged.triangles[there.triangle];
+        for (std::size_t k = 0; k < 3; ++k) REQUIRE(number[a[k]] == b[k]);
     }
 }
