@@ -161,8 +161,9 @@ TEST_CASE("view: everything wanted is the uniform level, nothing wanted the base
             settle(*mesh, none);
             REQUIRE(mesh->active_splits() == 0);
             REQUIRE(of_view(*mesh) == of_level(record, 0));
-            REQUIRE(std::memcmp(mesh->positions().data(), record.positions.data(),
-                                record.positions.size() * sizeof(Float3)) == 0);
+            REQUIRE(
+                (record.positions.empty() || std::memcmp(mesh->positions().data(), record.positions.data(),
+                                                         record.positions.size() * sizeof(Float3)) == 0));
             REQUIRE(mesh->attributes() == record.attributes);
         }
     }
@@ -210,7 +211,8 @@ TEST_CASE("view: dirty ranges carry a copy along") {
             std::copy(mesh->positions().begin() + begin, mesh->positions().begin() + end,
                       places.begin() + begin);
         REQUIRE(std::equal(mesh->triangles().begin(), mesh->triangles().end(), triangles.begin()));
-        REQUIRE(std::memcmp(places.data(), mesh->positions().data(), places.size() * sizeof(Float3)) == 0);
+        REQUIRE((places.empty() ||
+                 std::memcmp(places.data(), mesh->positions().data(), places.size() * sizeof(Float3)) == 0));
         REQUIRE(mesh->take_dirty().triangles.empty());
         REQUIRE(sent <= mesh->triangles().size());
     }
