@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The vsplit authors
 // SPDX-License-Identifier: MIT
 //
-// libFuzzer target: a file that arrives in pieces of any size, shown at any level in between, forward and back.
-// The last bytes of the input say how; the rest is the file, its checksums made to fit.
+// libFuzzer target: a file that arrives in pieces of any size, shown at any level in between, forward and
+// back. The last bytes of the input say how; the rest is the file, its checksums made to fit.
 #include <cstdlib>
 
 #include "../unit/pmesh_bytes.hpp"

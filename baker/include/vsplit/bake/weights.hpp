@@ -104,10 +104,10 @@ struct KeepResult {
     std::size_t bakes = 0;  ///< Records made to find it.
 };
 
-/// The weights that keep what is asked, within 1 % (or a vertex, where that is more): each region's weight is searched by recording the
-/// sequence and counting, others staying as they are; with several, in turns. Sets them in `marks`. Errors:
-/// kArgument for a region that is not there or is empty, or a share that no weight reaches (the message says
-/// how far one gets); what collapse() returns.
+/// The weights that keep what is asked, within 1 % (or a vertex, where that is more): each region's weight is
+/// searched by recording the sequence and counting, others staying as they are; with several, in turns. Sets
+/// them in `marks`. Errors: kArgument for a region that is not there or is empty, or a share that no weight
+/// reaches (the message says how far one gets); what collapse() returns.
 Result<std::vector<KeepResult>> find_weights(const Mesh& mesh, Marks& marks, std::span<const Keep> wishes,
                                              const CollapseOptions& options = {},
                                              const Progress& progress = {});
