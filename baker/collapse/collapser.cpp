@@ -34,6 +34,18 @@ Float3 to_float(Double3 p) {
     return {float(p.x), float(p.y), float(p.z)};
 }
 
+/// Appends the corners of triangles around `v` that lie back on each other.
+void find_folds(const StarMesh& mesh, std::uint32_t v, std::vector<std::uint32_t>& found) {
+    for (const std::uint32_t t : mesh.star(v))
+        for (const std::uint32_t other : mesh.star(v)) {
+            const Triangle &a = mesh.triangle(t), &b = mesh.triangle(other);
+            const std::uint32_t next = a[0] == v ? a[1] : a[1] == v ? a[2] : a[0];
+            const std::uint32_t last = b[0] == v ? b[2] : b[1] == v ? b[0] : b[1];
+            if (last == next && is_folded(mesh.normal(a), mesh.normal(b)))
+                found.insert(found.end(), {a[0], a[1], a[2], b[0], b[1], b[2]});
+        }
+}
+
 }  // namespace
 
 CollapseState::CollapseState(StarMesh&& stars, const CollapseOptions& chosen,
@@ -78,19 +90,7 @@ void Collapser::prepare(const Mesh& mesh) {
     for (std::uint32_t v = 0; v < state_.mesh.vertex_count() && state_.components.count() > 1; ++v)
         if (state_.mesh.kind(v) != VertexKind::kDead && !state_.weights.empty() && state_.weights[v] > 1)
             state_.components.keep(state_.components.of(v));
-    tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, state_.mesh.vertex_count(), 4096),
-                      [&](const tbb::blocked_range<std::uint32_t>& range) {
-                          std::vector<Neighbour> scratch;
-                          for (std::uint32_t v = range.begin(); v < range.end(); ++v) {
-                              if (state_.mesh.kind(v) == VertexKind::kDead) continue;
-                              rebuild_shape(state_.mesh, v, state_.options.boundary_weight, scratch);
-                              std::copy_n(state_.mesh.vertex(v).area, 3, state_.histories[v].normal);
-                              if (!state_.weights.empty() && std::isfinite(state_.weights[v]))
-                                  state_.mesh.vertex(v).weight = state_.weights[v];
-                              state_.histories[v].witness = to_float(state_.mesh.position(v));
-                          }
-                      });
-    mark_folds();
+    shape_all();
     for (std::uint32_t v = 0; v < state_.mesh.vertex_count(); ++v)
         state_.area += double(state_.mesh.vertex(v).size) / 3;
     if (options.cost == Cost::kPaper) state_.paper = std::make_unique<PaperCost>(state_.mesh);
@@ -130,35 +130,26 @@ void Collapser::lock() {
     }
 }
 
-void Collapser::mark_folds() {
+void Collapser::shape_all() {
     StarMesh& mesh = state_.mesh;
     tbb::enumerable_thread_specific<std::vector<std::uint32_t>> folded;
-    tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, mesh.vertex_count(), 4096),
-                      [&](const tbb::blocked_range<std::uint32_t>& range) {
-                          std::vector<std::uint32_t>& found = folded.local();
-                          for (std::uint32_t v = range.begin(); v < range.end(); ++v) {
-                              const auto star = mesh.star(v);
-                              if (star.size() > kLargeStar) continue;
-                              // Of two triangles that lie back on each other, one departs much from any
-                              // direction.
-                              const float* area = mesh.vertex(v).area;
-                              const Double3 mean{double(area[0]), double(area[1]), double(area[2])};
-                              const bool bends = std::any_of(star.begin(), star.end(), [&](std::uint32_t t) {
-                                  const Double3 n = mesh.normal(mesh.triangle(t));
-                                  const double along = dot(n, mean);
-                                  return along <= 0 || along * along < 0.1 * length2(n) * length2(mean);
-                              });
-                              if (!bends) continue;
-                              for (const std::uint32_t t : star)
-                                  for (const std::uint32_t other : star) {
-                                      const Triangle &a = mesh.triangle(t), &b = mesh.triangle(other);
-                                      const std::uint32_t next = a[0] == v ? a[1] : a[1] == v ? a[2] : a[0];
-                                      const std::uint32_t last = b[0] == v ? b[2] : b[1] == v ? b[0] : b[1];
-                                      if (last == next && is_folded(mesh.normal(a), mesh.normal(b)))
-                                          found.insert(found.end(), {a[0], a[1], a[2], b[0], b[1], b[2]});
-                                  }
-                          }
-                      });
+    tbb::parallel_for(
+        tbb::blocked_range<std::uint32_t>(0, mesh.vertex_count(), 4096),
+        [&](const tbb::blocked_range<std::uint32_t>& range) {
+            std::vector<Neighbour> scratch;
+            std::vector<std::uint32_t>& found = folded.local();
+            for (std::uint32_t v = range.begin(); v < range.end(); ++v) {
+                if (mesh.kind(v) == VertexKind::kDead) continue;
+                bool bends = false;
+                rebuild_shape(mesh, v, state_.options.boundary_weight, scratch, &bends);
+                std::copy_n(mesh.vertex(v).area, 3, state_.histories[v].normal);
+                if (!state_.weights.empty() && std::isfinite(state_.weights[v]))
+                    mesh.vertex(v).weight = state_.weights[v];
+                state_.histories[v].witness = to_float(mesh.position(v));
+                // Of two triangles that lie back on each other, one departs much from any direction.
+                if (bends) find_folds(mesh, v, found);
+            }
+        });
     for (const auto& found : folded)
         for (const std::uint32_t v : found) mesh.vertex(v).folded = 1;
 }
@@ -204,7 +195,8 @@ template <class Between>
 bool Collapser::round(Bucket begin, Bucket end, std::uint64_t number, const Between& between) {
     const std::uint32_t vertices = state_.mesh.vertex_count();
     const std::uint32_t regions = state_.mesh.live_vertices() / kRegionVertices;
-    Region whole(state_);
+    if (!whole_) whole_ = std::make_unique<Region>(state_);
+    Region& whole = *whole_;
     whole.open(0, vertices, begin, end);
     if (regions < 2) {
         for (const std::uint32_t v : alive_)
@@ -214,15 +206,14 @@ bool Collapser::round(Bucket begin, Bucket end, std::uint64_t number, const Betw
         constexpr std::size_t kRoom = std::size_t{3} * kRegionVertices / 2;
         state_.mesh.make_room((regions + 1) * kRoom);
         const std::uint32_t size = vertices / regions + 1, shift = number % 2 == 0 ? size : size / 2;
-        std::vector<std::unique_ptr<Region>> parts(regions + 1);
+        while (parts_.size() < regions + 1) parts_.push_back(std::make_unique<Region>(state_));
+        const auto parts = std::span(parts_).first(regions + 1);
         tbb::parallel_for(
             tbb::blocked_range<std::uint32_t>(0, regions + 1, 1),
             [&](const tbb::blocked_range<std::uint32_t>& range) {
                 for (std::uint32_t i = range.begin(); i < range.end(); ++i) {
                     const std::uint32_t low = i == 0 ? 0 : std::min(vertices, (i - 1) * size + shift),
                                         high = std::min(vertices, i * size + shift);
-                    parts[i] = std::make_unique<Region>(state_);
-                    if (low == high) continue;
                     parts[i]->open(low, high, begin, end, kRoom);
                     auto v = std::lower_bound(alive_.begin(), alive_.end(), low);
                     for (; v != alive_.end() && *v < high; ++v)

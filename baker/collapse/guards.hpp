@@ -45,8 +45,8 @@ class Guards {
     /// From now on only stars whose vertices are `low` to `high` - 1 are asked about.
     void open(std::uint32_t low, std::uint32_t high) {
         low_ = low;
-        stamps_.assign(high - low, 0);
-        stamp_ = 0;
+        // Old stamps are below all that come.
+        if (stamps_.size() < high - low) stamps_.resize(high - low, 0);
     }
 
     /// The link condition, and what else collapsing the edge would do to the topology.

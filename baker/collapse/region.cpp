@@ -70,6 +70,13 @@ Target Region::best_of(std::uint32_t u) {
 }
 
 bool Region::star_inside(std::uint32_t v) const {
+    if (mesh_.kind(v) == VertexKind::kInner) {
+        for (const std::uint32_t t : mesh_.star(v)) {
+            const Triangle& c = mesh_.triangle(t);
+            if (!inside(c[0] == v ? c[1] : c[1] == v ? c[2] : c[0])) return false;
+        }
+        return true;
+    }
     for (const std::uint32_t t : mesh_.star(v))
         for (const std::uint32_t w : mesh_.triangle(t))
             if (!inside(w)) return false;
@@ -138,6 +145,8 @@ Fold Region::fold_of(std::uint32_t u, std::uint32_t v) const {
     // A hub's edges would break the limit; pricing them at each collapse near it would be quadratic.
     const bool hub = std::max(mesh_.star(u).size(), mesh_.star(v).size()) > state_.strictness.max_valence;
     if (hub) return Fold::kNever;
+    if (!mesh_.has_wedges() && mesh_.kind(u) == VertexKind::kInner && mesh_.kind(v) == VertexKind::kInner)
+        return Fold::kAnywhere;
     const Fold fold = fold_rule(mesh_, u, v);
     return fold == Fold::kNever && mesh_.has_wedges() && !state_.paper ? relaxed_fold(u, v) : fold;
 }
