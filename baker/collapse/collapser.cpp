@@ -235,6 +235,7 @@ bool Collapser::round(Bucket begin, Bucket end, std::uint64_t number, const Betw
             take(*part);
             for (const std::uint32_t item : part->put_off())
                 if (state_.slots[item] < end) whole.line_up(item);
+            part->close();
         }
     }
     for (std::uint32_t c = vertices; c < state_.slots.size(); ++c)
@@ -243,6 +244,7 @@ bool Collapser::round(Bucket begin, Bucket end, std::uint64_t number, const Betw
     record_.append(whole.record(), 0, whole.record().size());
     if (input_) wedge_record_.append(whole.wedge_record(), 0, whole.record().size(), state_.wedges->stride());
     take(whole);
+    whole.close();
     return true;
 }
 
@@ -332,6 +334,8 @@ ProgressiveMesh Collapser::finish(CollapseReport& report) {
                             ? "there is nothing to collapse"
                             : "every remaining edge is fixed, or its collapse would change the topology";
     // Only the mesh itself is needed from here on, without its stars.
+    whole_.reset();
+    parts_.clear();
     state_.mesh.drop_stars();
     std::vector<VertexHistory>().swap(state_.histories);
     std::vector<Target>().swap(state_.targets);

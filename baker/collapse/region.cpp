@@ -62,6 +62,11 @@ void Region::open(std::uint32_t low, std::uint32_t high, Bucket begin, Bucket en
     vanished_ = 0;
 }
 
+void Region::close() {
+    record_ = Record(false);
+    wedge_record_ = {};
+}
+
 Target Region::best_of(std::uint32_t u) {
     list_edges(u, listed_);
     Target best;

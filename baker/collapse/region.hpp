@@ -79,6 +79,8 @@ class Region {
     /// Gets ready for vertices `low` to `high` - 1 and costs of buckets `begin` to `end` - 1.
     /// May take `room` entries of the mesh's arena, which are there; the whole mesh makes its own room.
     void open(std::uint32_t low, std::uint32_t high, Bucket begin, Bucket end, std::size_t room = 0);
+    /// Frees the record.
+    void close();
     /// Lines up an item of the range that waits within the window.
     void line_up(std::uint32_t item) { queue_.line_up(item); }
     /// Collapses until nothing in the window waits. `between` is called now and then, and stops if false.
