@@ -18,7 +18,7 @@ namespace {
 constexpr double kPaperCosine = 0.6;
 
 /// Live vertices of a region: few enough for the cache, enough that most have no neighbours elsewhere.
-constexpr std::uint32_t kRegionVertices = 1 << 14;
+constexpr std::uint32_t kRegionVertices = 1 << 13;
 
 /// A round has an octave of costs, and more if that is less than this share of the vertices.
 constexpr std::uint32_t kRounds = 32;
@@ -133,23 +133,23 @@ void Collapser::lock() {
 void Collapser::shape_all() {
     StarMesh& mesh = state_.mesh;
     tbb::enumerable_thread_specific<std::vector<std::uint32_t>> folded;
-    tbb::parallel_for(
-        tbb::blocked_range<std::uint32_t>(0, mesh.vertex_count(), 4096),
-        [&](const tbb::blocked_range<std::uint32_t>& range) {
-            std::vector<Neighbour> scratch;
-            std::vector<std::uint32_t>& found = folded.local();
-            for (std::uint32_t v = range.begin(); v < range.end(); ++v) {
-                if (mesh.kind(v) == VertexKind::kDead) continue;
-                bool bends = false;
-                rebuild_shape(mesh, v, state_.options.boundary_weight, scratch, &bends);
-                std::copy_n(mesh.vertex(v).area, 3, state_.histories[v].normal);
-                if (!state_.weights.empty() && std::isfinite(state_.weights[v]))
-                    mesh.vertex(v).weight = state_.weights[v];
-                state_.histories[v].witness = to_float(mesh.position(v));
-                // Of two triangles that lie back on each other, one departs much from any direction.
-                if (bends) find_folds(mesh, v, found);
-            }
-        });
+    tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, mesh.vertex_count(), 4096),
+                      [&](const tbb::blocked_range<std::uint32_t>& range) {
+                          std::vector<Neighbour> scratch;
+                          std::vector<std::uint32_t>& found = folded.local();
+                          for (std::uint32_t v = range.begin(); v < range.end(); ++v) {
+                              if (mesh.kind(v) == VertexKind::kDead) continue;
+                              bool bends = false;
+                              rebuild_shape(mesh, v, state_.options.boundary_weight, scratch, &bends);
+                              std::copy_n(mesh.vertex(v).area, 3, state_.histories[v].normal);
+                              if (!state_.weights.empty() && std::isfinite(state_.weights[v]))
+                                  mesh.vertex(v).weight = state_.weights[v];
+                              state_.histories[v].witness = to_float(mesh.position(v));
+                              // Of two triangles that lie back on each other, one departs much from any
+                              // direction.
+                              if (bends) find_folds(mesh, v, found);
+                          }
+                      });
     for (const auto& found : folded)
         for (const std::uint32_t v : found) mesh.vertex(v).folded = 1;
 }
@@ -191,6 +191,44 @@ void Collapser::take(const Region& region) {
     vanished_ += region.vanished();
 }
 
+std::vector<std::uint32_t> Collapser::in_regions(const std::vector<std::uint32_t>& items, std::uint32_t size,
+                                                 std::uint32_t shift, Bucket begin, Bucket end) {
+    constexpr std::size_t kRoom = std::size_t{3} * kRegionVertices / 2;
+    const std::uint32_t vertices = state_.mesh.vertex_count(), regions = vertices / size + 2;
+    state_.mesh.make_room(regions * kRoom);
+    while (parts_.size() < regions) parts_.push_back(std::make_unique<Region>(state_));
+    const auto parts = std::span(parts_).first(regions);
+    tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, regions, 1),
+                      [&](const tbb::blocked_range<std::uint32_t>& range) {
+                          for (std::uint32_t i = range.begin(); i < range.end(); ++i) {
+                              const std::uint32_t low =
+                                                      i == 0 ? 0 : std::min(vertices, (i - 1) * size + shift),
+                                                  high = std::min(vertices, i * size + shift);
+                              parts[i]->open(low, high, begin, end, kRoom);
+                              auto v = std::lower_bound(items.begin(), items.end(), low);
+                              for (; v != items.end() && *v < high; ++v)
+                                  if (state_.slots[*v] < end) parts[i]->line_up(*v);
+                              parts[i]->run([] { return true; });
+                          }
+                      });
+    for (Bucket bucket = begin; bucket < end; ++bucket)
+        for (const auto& part : parts) {
+            const auto& ends = part->ends();
+            const std::size_t at = std::size_t(bucket - begin);
+            if (at >= ends.size()) continue;
+            const std::size_t from = at == 0 ? 0 : ends[at - 1];
+            record_.append(part->record(), from, ends[at]);
+            if (input_) wedge_record_.append(part->wedge_record(), from, ends[at], state_.wedges->stride());
+        }
+    std::vector<std::uint32_t> left;
+    for (const auto& part : parts) {
+        take(*part);
+        left.insert(left.end(), part->put_off().begin(), part->put_off().end());
+        part->close();
+    }
+    return left;
+}
+
 template <class Between>
 bool Collapser::round(Bucket begin, Bucket end, std::uint64_t number, const Between& between) {
     const std::uint32_t vertices = state_.mesh.vertex_count();
@@ -202,41 +240,14 @@ bool Collapser::round(Bucket begin, Bucket end, std::uint64_t number, const Betw
         for (const std::uint32_t v : alive_)
             if (state_.slots[v] < end) whole.line_up(v);
     } else {
-        // Every other round, regions begin elsewhere.
-        constexpr std::size_t kRoom = std::size_t{3} * kRegionVertices / 2;
-        state_.mesh.make_room((regions + 1) * kRoom);
-        const std::uint32_t size = vertices / regions + 1, shift = number % 2 == 0 ? size : size / 2;
-        while (parts_.size() < regions + 1) parts_.push_back(std::make_unique<Region>(state_));
-        const auto parts = std::span(parts_).first(regions + 1);
-        tbb::parallel_for(
-            tbb::blocked_range<std::uint32_t>(0, regions + 1, 1),
-            [&](const tbb::blocked_range<std::uint32_t>& range) {
-                for (std::uint32_t i = range.begin(); i < range.end(); ++i) {
-                    const std::uint32_t low = i == 0 ? 0 : std::min(vertices, (i - 1) * size + shift),
-                                        high = std::min(vertices, i * size + shift);
-                    parts[i]->open(low, high, begin, end, kRoom);
-                    auto v = std::lower_bound(alive_.begin(), alive_.end(), low);
-                    for (; v != alive_.end() && *v < high; ++v)
-                        if (state_.slots[*v] < end) parts[i]->line_up(*v);
-                    parts[i]->run([] { return true; });
-                }
-            });
-        for (Bucket bucket = begin; bucket < end; ++bucket)
-            for (const auto& part : parts) {
-                const auto& ends = part->ends();
-                const std::size_t at = std::size_t(bucket - begin);
-                if (at >= ends.size()) continue;
-                const std::size_t from = at == 0 ? 0 : ends[at - 1];
-                record_.append(part->record(), from, ends[at]);
-                if (input_)
-                    wedge_record_.append(part->wedge_record(), from, ends[at], state_.wedges->stride());
-            }
-        for (const auto& part : parts) {
-            take(*part);
-            for (const std::uint32_t item : part->put_off())
-                if (state_.slots[item] < end) whole.line_up(item);
-            part->close();
-        }
+        // Every other round, regions begin elsewhere; what is put off comes up in regions that begin half a
+        // region later, where most of it is not at the border.
+        const std::uint32_t size = vertices / regions + 1, half = size / 2;
+        auto left = in_regions(alive_, size, number % 2 == 0 ? size : half, begin, end);
+        std::sort(left.begin(), left.end());
+        left = in_regions(left, size, number % 2 == 0 ? half : size, begin, end);
+        for (const std::uint32_t v : left)
+            if (state_.slots[v] < end) whole.line_up(v);
     }
     for (std::uint32_t c = vertices; c < state_.slots.size(); ++c)
         if (state_.slots[c] < end) whole.line_up(c);
@@ -279,6 +290,7 @@ bool Collapser::run(const Progress& progress) {
     if (mesh.triangle_count() == 0) return true;
     for (std::uint32_t v = 0; v < mesh.vertex_count(); ++v)
         if (mesh.kind(v) != VertexKind::kDead) alive_.push_back(v);
+    record_.reserve(mesh.live_vertices(), mesh.triangle_count());
     price_all();
     const double total = double(mesh.triangle_count());
     double said = 0;

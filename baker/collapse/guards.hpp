@@ -59,6 +59,8 @@ class Guards {
                      const Strictness& strictness) const;
 
   private:
+    /// The link condition for few triangles, of which at most two are on the edge.
+    static bool links_meet_across(const EdgeStar& star);
     /// Whether triangle `i` of the new fan, of this normal, lies back on one beside it. `keeps_folds`: those
     /// that were there before do not count.
     bool folds_back(const EdgeStar& star, std::size_t i, Double3 normal, bool keeps_folds) const;

@@ -188,7 +188,7 @@ class Measurer {
         edges_.erase(std::unique(edges_.begin(), edges_.end()), edges_.end());
         for (const auto& [u, v] : edges_) add((place(u) + place(v)) * 0.5);
         batch_.groups.push_back({begin, std::uint32_t(batch_.samples.size()), split,
-                           points_.empty() ? 0 : points_.front(), float(enough), 0});
+                                 points_.empty() ? 0 : points_.front(), float(enough), 0});
     }
     bool acts(std::uint32_t v) const {
         return std::find(walk_.acts().begin(), walk_.acts().end(), v) != walk_.acts().end();

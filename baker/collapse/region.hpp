@@ -144,6 +144,7 @@ class Region {
     /// The edges that `u` owns, with their costs.
     void list_edges(std::uint32_t u, EdgeList& list) const;
     void prefetch() const;
+    void fetch_around(const EdgeStar& star) const;
     void process(std::uint32_t u, Bucket bucket);
     void process_component(std::uint32_t component, Bucket bucket);
     /// kWaits sets `cost` to what it has to wait for (infinity: never as things are).
