@@ -81,8 +81,9 @@ VSPLIT_EXPORT int vsplit_feed(double offset, const std::byte* bytes, std::uint32
     if (stream->ready() && !patcher) {
         const FileInfo& info = *stream->info();
         if (info.largest_group >= kMostGroups)
-            return fail({ErrorCode::kLimit, "the mesh has more than " + std::to_string(kMostGroups) + " groups",
-                         Error::kNowhere, 0});
+            return fail({ErrorCode::kLimit,
+                         "the mesh has more than " + std::to_string(kMostGroups) + " groups", Error::kNowhere,
+                         0});
         patcher.emplace(info.largest_group + 1, makes_normals);
     }
     return status_of(status);

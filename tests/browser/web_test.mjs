@@ -322,14 +322,14 @@ test('local files, keys, colours, sizes', async (t) => {
     await page.selectOption('#colour', 'plain');
     // A pixel error asks for fewer triangles from further away.
     await page.keyboard.press('p');
-    await until(page, () => 'error' in (window.vsplit.state.target ?? {}));
-    const near = await page.evaluate(() => window.vsplit.state.target.error);
+    await until(page, () => 'pixels' in (window.vsplit.state.target ?? {}));
+    const near = await page.evaluate(() => window.vsplit.state.target.pixels);
     await page.evaluate(() => window.vsplit.camera.position.multiplyScalar(3));
     await page.mouse.move(500, 200);
     await page.mouse.down();
     await page.mouse.move(540, 210, { steps: 3 });
     await page.mouse.up();
-    await until(page, (e) => window.vsplit.state.target.error > 1.5 * e, near);
+    await until(page, (e) => window.vsplit.state.target.pixels > 1.5 * e, near);
     // The other files are not models.
     await page.setInputFiles('#file', join(folder, 'whale.ply'));
     assert.equal((await failure(page)).code, 'not-a-model');

@@ -88,9 +88,9 @@ class LiveBuffers {
 
     DirtyRanges take_dirty();
 
-    /// Keeps from the next begin() on, beside the hulls, which runs of vertices and triangles changed: refining
-    /// changes a few corners here and there, and a hull of them is nearly everything. Costs a look at each
-    /// corner changed, and a bit for every 16 elements.
+    /// Keeps from the next begin() on, beside the hulls, which runs of vertices and triangles changed:
+    /// refining changes a few corners here and there, and a hull of them is nearly everything. Costs a look
+    /// at each corner changed, and a bit for every 16 elements.
     void track_runs(bool on) { tracks_ = on; }
     /// Those since the last call: appended, in order, apart from each other, within what is alive. Nothing
     /// unless they are tracked.
