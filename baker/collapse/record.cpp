@@ -91,6 +91,7 @@ ProgressiveMesh Record::finish(const StarMesh& mesh, const std::vector<float>& w
         triangle_birth[t] = std::uint32_t(out.triangles.size());
         const Triangle& c = mesh.triangle(t);
         out.triangles.push_back({vertex_birth[c[0]], vertex_birth[c[1]], vertex_birth[c[2]]});
+        if (mesh.copies().any()) out.groups.push_back(mesh.copies().tag(t));
     };
     std::vector<bool> is_removed(mesh.triangle_count(), false);
     for (const std::uint32_t t : removed) is_removed[t] = true;
