@@ -156,6 +156,8 @@ class StarMesh {
   private:
     /// Of all vertices; whether triangles on two sides of an edge disagree anywhere.
     bool classify();
+    /// Surely one closed fan, consistently oriented, of few triangles.
+    bool is_closed_fan(std::uint32_t v) const;
 
     std::vector<Vertex> vertices_;
     std::vector<Triangle> triangles_;
