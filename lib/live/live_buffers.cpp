@@ -1,9 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The vsplit authors
 // SPDX-License-Identifier: MIT
-//
-// The splits as patch lists. Nearly all of them give birth to one vertex and at most three triangles, change
-// at most 15 corners and move nothing or the parent: their counts are one byte, the vertex born is the next
-// one, and what a changed corner held before is that vertex's parent. The others are `specials`.
 #include "vsplit/live_buffers.hpp"
 
 #include <algorithm>
@@ -11,24 +7,17 @@
 #include <limits>
 #include <utility>
 
+#include "extend.hpp"
+#include "live_codes.hpp"
+
 namespace vsplit {
 namespace {
 
-constexpr unsigned kCornerBits = 0x0f, kTriangleShift = 4, kTriangleBits = 3, kMoveBit = 0x40,
-                   kSpecialBit = 0x80;
 constexpr std::size_t kInterval = 128;  // splits between checkpoints
 constexpr std::size_t kAhead = 32;      // corners between the one fetched and the one written
 constexpr std::size_t kFetched = 3;     // corners fetched a split: about as many as change
 constexpr std::size_t kAlways = 4;      // corners written without looking at how many there are
 constexpr std::size_t kChunk = 256;     // moves listed at a time
-
-/// Reads a byte beyond a corner of three. Compilers make one load of it.
-template <unsigned kBytes>
-std::uint32_t load(const std::uint8_t* p) {
-    const std::uint32_t four = std::uint32_t{p[0]} | std::uint32_t{p[1]} << 8 | std::uint32_t{p[2]} << 16 |
-                               std::uint32_t{p[3]} << 24;
-    return kBytes == 3 ? four & 0xffffff : four;
-}
 
 void prefetch(const void* address) {
 #if defined(__GNUC__)
@@ -36,16 +25,6 @@ void prefetch(const void* address) {
 #else
     static_cast<void>(address);
 #endif
-}
-
-template <class T>
-void extend(std::vector<T>& to, const std::vector<T>& from, std::size_t end) {
-    to.insert(to.end(), from.begin() + std::ptrdiff_t(to.size()), from.begin() + std::ptrdiff_t(end));
-}
-
-template <class T>
-std::size_t bytes(const std::vector<T>& v) {
-    return v.capacity() * sizeof(T);
 }
 
 /// Exchanges `kComponents` (or, if that is 0, `components`) floats of each vertex with the moves from
@@ -253,11 +232,12 @@ std::span<const std::uint32_t> LiveBuffers::groups() const {
 }
 
 std::size_t LiveBuffers::memory() const {
-    std::size_t sum = sizeof(*this) + bytes(positions_) + bytes(triangles_) + bytes(weights_) +
-                      bytes(attributes_) + bytes(groups_) + bytes(parents_) + bytes(codes_) +
-                      bytes(corners_) + bytes(moved_positions_) + bytes(moved_weights_) + bytes(specials_) +
-                      bytes(special_corners_) + bytes(special_moves_) + bytes(checkpoints_) + bytes(errors_);
-    for (const Values& values : attributes_) sum += bytes(values.alive) + bytes(values.moved);
+    std::size_t sum = sizeof(*this) + bytes_of(positions_) + bytes_of(triangles_) + bytes_of(weights_) +
+                      bytes_of(attributes_) + bytes_of(groups_) + bytes_of(parents_) + bytes_of(codes_) +
+                      bytes_of(corners_) + bytes_of(moved_positions_) + bytes_of(moved_weights_) +
+                      bytes_of(specials_) + bytes_of(special_corners_) + bytes_of(special_moves_) +
+                      bytes_of(checkpoints_) + bytes_of(errors_);
+    for (const Values& values : attributes_) sum += bytes_of(values.alive) + bytes_of(values.moved);
     return sum;
 }
 

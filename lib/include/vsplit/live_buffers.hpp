@@ -84,6 +84,10 @@ class LiveBuffers {
 
     DirtyRanges take_dirty();
 
+    /// The splits known as they were appended, but without the attributes' names and meanings. Walks to level
+    /// 0 and back: all ends as it was.
+    ProgressiveMesh record();
+
     /// Bytes allocated.
     std::size_t memory() const;
 
