@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 //
 // LiveBuffers: the way back from patch lists to a record.
+#include <bit>
+
 #include "live_codes.hpp"
 #include "vsplit/live_buffers.hpp"
 
@@ -21,7 +23,7 @@ ProgressiveMesh LiveBuffers::record() {
     out.groups = groups_;
     for (const Values& values : attributes_) {
         out.attributes.push_back({{}, Semantic::kOther, values.components, values.alive});
-        out.moved_values.push_back(values.moved);
+        out.moved_values.emplace_back().reserve(values.moved.size());
     }
     out.splits.reserve(codes_.size());
     out.corner_changes.reserve(known_.corners);
@@ -30,8 +32,35 @@ ProgressiveMesh LiveBuffers::record() {
         const std::uint8_t* const p = corners_.data() + std::size_t{corner_bytes_} * index;
         out.corner_changes.push_back({corner_bytes_ == 3 ? load<3>(p) : load<4>(p), vertex});
     };
+    // Moves are differences: what they come to is the sum.
+    std::vector<Float3> places = positions_;
+    std::vector<float> weights = weights_;
+    std::vector<std::vector<float>> values;
+    for (const Values& of : attributes_) values.push_back(of.alive);
+    const auto flip = [](float& value, std::uint32_t bits) {
+        value = std::bit_cast<float>(std::bit_cast<std::uint32_t>(value) ^ bits);
+    };
     const auto move = [&](std::uint32_t index, std::uint32_t vertex) {
-        out.moves.push_back({vertex, moved_positions_[index], weights_.empty() ? 1 : moved_weights_[index]});
+        Float3& place = places[vertex];
+        if (packed_) {
+            std::array<std::int32_t, 3> at = grid_point(grid_, place);
+            for (std::size_t axis = 0; axis < 3; ++axis) at[axis] += steps_[index][axis];
+            place = grid_place(grid_, at);
+        } else {
+            flip(place.x, moved_positions_[index][0]);
+            flip(place.y, moved_positions_[index][1]);
+            flip(place.z, moved_positions_[index][2]);
+        }
+        if (!weights.empty()) flip(weights[vertex], moved_weights_[index]);
+        out.moves.push_back({vertex, place, weights.empty() ? 1 : weights[vertex]});
+        for (std::size_t i = 0; i < attributes_.size(); ++i) {
+            const std::size_t n = attributes_[i].components;
+            for (std::size_t k = 0; k < n; ++k) {
+                float& value = values[i][n * vertex + k];
+                flip(value, attributes_[i].moved[n * index + k]);
+                out.moved_values[i].push_back(value);
+            }
+        }
     };
     auto run = errors_.begin();
     Ends ends = now_;

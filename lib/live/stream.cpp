@@ -75,7 +75,7 @@ Status Stream::State::take_front() {
     }
     decoder = *std::move(begun);
     live.begin(decoder->mesh(), info->vertices, info->triangles, info->splits, info->corner_changes,
-               info->moves);
+               info->moves, grid_of(*info));
     if (info->blocks.empty()) decoder.reset();
     return selective_wanted ? begin_selective() : Ok{};
 }

@@ -27,6 +27,11 @@ inline std::uint64_t clamped_count(double value) {
     return value >= 4294967295.0 ? 4294967295u : std::uint64_t(value);
 }
 
+/// Where the file's places are.
+inline PlaceGrid grid_of(const FileInfo& info) {
+    return info.lossless ? PlaceGrid{} : PlaceGrid{info.lattice_origin, info.lattice_step};
+}
+
 struct Stream::State {
     explicit State(StreamOptions given) : options(std::move(given)) {}
 
