@@ -72,7 +72,11 @@ std::size_t Stream::State::blocks_for_selective() const {
         if (double(info->base_error) * largest <= most) return std::size_t{0};
         return blocks_until([&](const BlockInfo& b) { return double(b.error) * largest <= most; });
     };
-    if (view) return until_error(error_of_view(*view, info->bounds_min, info->bounds_max));
+    if (view) {
+        // Where no error is allowed, splits without any are wanted, too.
+        const double most = error_of_view(*view, info->bounds_min, info->bounds_max);
+        return most > 0 ? until_error(most) : info->blocks.size();
+    }
     if (target.kind == Target::Kind::kError || target.kind == Target::Kind::kPixels)
         return until_error(target.value);
     // A count: as many as the uniform level has, and then those that may be worth more than the last ones.

@@ -282,7 +282,7 @@ TEST_CASE("A job decodes elsewhere; meanwhile the stream goes on within what it 
 }
 
 TEST_CASE("A host may decode the base mesh; what it gives is checked") {
-    const Bytes bytes = file_of(sphere());
+    const Bytes bytes = file_of(test::naive_record(test::make_sphere(30, 20), 5, 300));
     const auto whole = read_progressive_mesh(bytes);
     int asked = 0;
     StreamOptions options;
