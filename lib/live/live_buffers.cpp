@@ -10,6 +10,7 @@
 
 #include "extend.hpp"
 #include "live_codes.hpp"
+#include "prefetch.hpp"
 
 namespace vsplit {
 namespace {
@@ -18,14 +19,6 @@ constexpr std::size_t kAhead = 32;   // corners between the one fetched and the 
 constexpr std::size_t kFetched = 3;  // corners fetched a split: about as many as change
 constexpr std::size_t kAlways = 4;   // corners written without looking at how many there are
 constexpr std::size_t kChunk = 256;  // moves listed at a time
-
-void prefetch(const void* address) {
-#if defined(__GNUC__)
-    __builtin_prefetch(address, 1);
-#else
-    static_cast<void>(address);
-#endif
-}
 
 constexpr std::size_t kVerticesAhead = 12;
 

@@ -7,9 +7,15 @@
 
 #include "exchange.hpp"
 #include "extend.hpp"
+#include "prefetch.hpp"
 #include "view_state.hpp"
 
 namespace vsplit {
+namespace {
+
+constexpr std::size_t kAhead = 12;  // places between the one fetched and the one looked at
+
+}  // namespace
 
 void ViewMesh::State::add_triangle(std::uint32_t t) {
     slot[t] = std::uint32_t(drawn.size());
@@ -119,16 +125,15 @@ std::size_t ViewMesh::State::force(std::uint32_t k, std::size_t most) {
 
 /// What a split's error spans on the screen (Hoppe 1997, section 4: sphere against frustum, cone of normals
 /// against the eye, deviation over distance).
-float ViewMesh::State::pixels(const View& view, const ViewNode& node) {
+float ViewMesh::State::pixels(const Frame& frame, const ViewNode& node) {
+    const View& view = frame.view;
     constexpr float kAll = std::numeric_limits<float>::infinity();
     const Float3& p = node.centre;
     const float x = view.eye.x - p.x, y = view.eye.y - p.y, z = view.eye.z - p.z;
     const float square = x * x + y * y + z * z;
     // Most are too small from this far, which takes neither a root nor a plane to see.
-    if (const float low = view.pixels * view.hysteresis; low > 0) {
-        const float reach = node.radius + node.error * view.pixels_at_distance_1 / low;
-        if (square >= reach * reach && square > node.radius * node.radius) return 0;
-    }
+    const float reach = node.radius + node.error * frame.reach;
+    if (square >= reach * reach && square > node.radius * node.radius) return 0;
     for (const ViewPlane& plane : view.planes)
         if (plane.x * p.x + plane.y * p.y + plane.z * p.z + plane.w < -node.radius) return 0;
     if (!(view.pixels > 0)) return kAll;
@@ -153,30 +158,31 @@ ViewMesh& ViewMesh::operator=(ViewMesh&&) noexcept = default;
 ViewMesh::~ViewMesh() = default;
 
 /// Looks at one place of the ring of splits without a parent and of active vertices.
-void ViewMesh::State::visit(const View& view, std::size_t at, std::size_t most, ViewUpdated& result) {
+void ViewMesh::State::visit(const Frame& frame, std::size_t at, std::size_t most, ViewUpdated& result) {
     const auto left = [&] { return most - result.refined - result.coarsened; };
     if (at < plan.returning.size()) {
         const std::uint32_t k = plan.returning[at];
         const ViewNode& node = plan.nodes[k];
         if (!applied[k]) {
-            if (wanted(view, node)) result.refined += force(k, left());
-        } else if (users[k] == 0 && unwanted(view, node)) {
+            if (wanted(frame, node)) result.refined += force(k, left());
+        } else if (users[k] == 0 && unwanted(frame, node)) {
             undo(k);
             ++result.coarsened;
         }
         return;
     }
     const Front& seen = active[at - plan.returning.size()];
-    const bool finer = seen.following != kNoSplit && wanted(view, seen.after);
-    if (!finer && (seen.current == kNoSplit || !unwanted(view, seen.done))) return;
+    const bool finer = seen.following != kNoSplit && wanted(frame, seen.after);
+    if (!finer && (seen.current == kNoSplit || users[seen.current] != 0 || !unwanted(frame, seen.done)))
+        return;
     const std::uint32_t v = seen.vertex;
     const std::size_t changed_before = result.refined + result.coarsened;
     // Its place may change with every split.
     const auto front = [&]() -> const Front& { return active[place[v]]; };
-    while (left() > 0 && front().following != kNoSplit && wanted(view, front().after))
+    while (left() > 0 && front().following != kNoSplit && wanted(frame, front().after))
         result.refined += force(front().following, left());
     if (result.refined + result.coarsened == changed_before)
-        while (left() > 0 && front().current != kNoSplit && unwanted(view, front().done) &&
+        while (left() > 0 && front().current != kNoSplit && unwanted(frame, front().done) &&
                users[front().current] == 0) {
             undo(front().current);
             ++result.coarsened;
@@ -187,6 +193,7 @@ ViewUpdated ViewMesh::update(const View& view, const ViewBudget& budget) {
     State& s = *state_;
     ViewUpdated result;
     Clock clock(budget.out_of_time);
+    const Frame frame(view);
     bool whole = true;
     for (std::size_t i = 0; i < s.plan.returning.size() + s.active.size(); ++i, ++result.visits) {
         const std::size_t changes = result.refined + result.coarsened;
@@ -196,7 +203,10 @@ ViewUpdated ViewMesh::update(const View& view, const ViewBudget& budget) {
             break;
         }
         if (s.cursor >= s.plan.returning.size() + s.active.size()) s.cursor = 0;
-        s.visit(view, s.cursor++, budget.max_splits, result);
+        if (const std::size_t ahead = s.cursor + kAhead - s.plan.returning.size(); ahead < s.active.size())
+            if (const std::uint32_t current = s.active[ahead].current; current != kNoSplit)
+                prefetch(&s.users[current]);
+        s.visit(frame, s.cursor++, budget.max_splits, result);
     }
     result.settled = whole && result.refined + result.coarsened == 0;
     if (result.refined + result.coarsened > 0) s.forget_place();

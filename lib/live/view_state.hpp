@@ -56,6 +56,18 @@ struct Front {
     ViewNode after, done;                                    ///< Of these two.
 };
 
+/// A view, and what is the same for all places.
+struct Frame {
+    explicit Frame(const View& of)
+        : view(of),
+          most(std::max(of.pixels, 0.0f)),
+          least(most * of.hysteresis),
+          reach(of.pixels_at_distance_1 / least) {}
+    const View& view;
+    float most, least;  ///< Pixels: more is wanted, not more than the least is not.
+    float reach;        ///< From how far an error of 1 is the least.
+};
+
 /// Asks the host's clock every few hundred steps.
 class Clock {
   public:
@@ -116,14 +128,12 @@ struct ViewMesh::State {
     std::size_t force(std::uint32_t k, std::size_t most);
     void add_vertex(std::uint32_t v);
     void turn(std::uint32_t anchor, std::uint32_t following, std::uint32_t current);
-    void visit(const View& view, std::size_t at, std::size_t most, ViewUpdated& result);
-    bool wanted(const View& view, const ViewNode& node) const {
-        return pixels(view, node) > std::max(view.pixels, 0.0f);
+    void visit(const Frame& frame, std::size_t at, std::size_t most, ViewUpdated& result);
+    static bool wanted(const Frame& frame, const ViewNode& node) { return pixels(frame, node) > frame.most; }
+    static bool unwanted(const Frame& frame, const ViewNode& node) {
+        return !(pixels(frame, node) > frame.least);
     }
-    bool unwanted(const View& view, const ViewNode& node) const {
-        return !(pixels(view, node) > std::max(view.pixels, 0.0f) * view.hysteresis);
-    }
-    static float pixels(const View& view, const ViewNode& node);
+    static float pixels(const Frame& frame, const ViewNode& node);
 };
 
 }  // namespace vsplit
