@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 //
 // The base mesh's triangles and places as Draco bytes. Only base_mesh_draco.cpp names Draco; a library built
-// without it has base_mesh_no_draco.cpp in its place.
+// without it has reads_only.cpp in its place.
 #pragma once
 
 #include <cstddef>

