@@ -99,9 +99,10 @@ bool same_bits(const Float3& a, const Float3& b) {
 
 /// The grid's point that is the place bit by bit, if there is one.
 std::optional<std::array<std::int32_t, 3>> on_grid(const PlaceGrid& grid, const Float3& place) {
-    const float values[3] = {place.x, place.y, place.z};
-    for (std::size_t axis = 0; axis < 3; ++axis)
-        if (!(std::abs((double(values[axis]) - grid.origin[axis]) / grid.step) < kGridReach)) return {};
+    const double inverse = 1 / grid.step, far = std::max({std::abs(double(place.x) - grid.origin[0]),
+                                                          std::abs(double(place.y) - grid.origin[1]),
+                                                          std::abs(double(place.z) - grid.origin[2])});
+    if (!(far * inverse < kGridReach)) return {};
     const std::array<std::int32_t, 3> at = grid_point(grid, place);
     if (!same_bits(grid_place(grid, at), place)) return {};
     return at;
@@ -111,6 +112,7 @@ std::optional<std::array<std::int32_t, 3>> on_grid(const PlaceGrid& grid, const 
 
 /// What is exchanged by the moves that are new: kept as differences, which go both ways and in any order.
 void LiveBuffers::append_moves(const ProgressiveMesh& mesh) {
+    last_moves_.reserve(totals_.vertices);
     last_moves_.resize(known_.vertices, kNever);
     const std::size_t begin = moves_stored_, end = known_.moves;
     moves_stored_ = end;
@@ -154,7 +156,7 @@ void LiveBuffers::append_moves(const ProgressiveMesh& mesh) {
         std::size_t from = begin;
         if (!steps_.empty()) {
             // One that is not on the grid, or too far for it: all are kept as they are, from the first on.
-            steps_ = {};
+            steps_ = std::vector<std::array<std::int16_t, 3>>();
             moved_positions_.reserve(totals_.moves);
             std::vector<std::uint32_t> last(known_.vertices, kNever);
             from = 0;
@@ -165,7 +167,7 @@ void LiveBuffers::append_moves(const ProgressiveMesh& mesh) {
             moved_positions_.push_back({flip(a.x, b.x), flip(a.y, b.y), flip(a.z, b.z)});
         });
     }
-    if (available() == total_splits_) last_moves_ = {};
+    if (available() == total_splits_) last_moves_ = std::vector<std::uint32_t>();  // {} would keep the memory
 }
 
 void LiveBuffers::store_corner(std::uint32_t corner) {
