@@ -22,9 +22,13 @@ constexpr std::int32_t kMostShort = 32767, kNotShort = 1 << 30;
 void LiveBuffers::begin(const ProgressiveMesh& mesh, std::uint32_t vertices, std::uint32_t triangles,
                         std::uint32_t splits, std::uint32_t corner_changes, std::uint32_t moves,
                         const PlaceGrid& grid) {
+    const bool tracks = tracks_;
     *this = LiveBuffers();
+    tracks_ = tracking_ = tracks;
+    if (tracking_) vertex_runs_.resize(vertices), triangle_runs_.resize(triangles);
     grid_ = grid;
-    packed_ = grid.step > 0 && std::isfinite(1 / grid.step);
+    packed_ = grid.step > 0 && std::isfinite(1 / grid.step) && std::isfinite(grid.origin[0]) &&
+              std::isfinite(grid.origin[1]) && std::isfinite(grid.origin[2]);
     totals_ = {vertices, triangles, corner_changes, moves, 0, 0, 0};
     total_splits_ = splits;
     corner_bytes_ = std::uint64_t{3} * triangles <= 0x1000000 ? 3 : 4;
@@ -49,6 +53,7 @@ void LiveBuffers::begin(const ProgressiveMesh& mesh, std::uint32_t vertices, std
     known_.triangles = mesh.base_triangles;
     now_ = known_;
     dirty_ = {0, now_.vertices, 0, now_.triangles};
+    if (tracking_) vertex_runs_.mark(0, now_.vertices), triangle_runs_.mark(0, now_.triangles);
     checkpoints_.push_back({known_, ~0u, 0});
     append(mesh);
 }

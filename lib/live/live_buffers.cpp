@@ -150,7 +150,7 @@ std::size_t LiveBuffers::memory() const {
                       bytes_of(corners_) + bytes_of(steps_) + bytes_of(moved_positions_) +
                       bytes_of(last_moves_) + bytes_of(moved_weights_) + bytes_of(specials_) +
                       bytes_of(special_corners_) + bytes_of(special_moves_) + bytes_of(checkpoints_) +
-                      bytes_of(errors_);
+                      bytes_of(errors_) + vertex_runs_.memory() + triangle_runs_.memory();
     for (const Values& values : attributes_) sum += bytes_of(values.alive) + bytes_of(values.moved);
     return sum;
 }
@@ -166,6 +166,11 @@ DirtyRanges LiveBuffers::take_dirty() {
     return dirty;
 }
 
+void LiveBuffers::take_dirty_runs(std::vector<ElementRange>& vertices, std::vector<ElementRange>& triangles) {
+    vertex_runs_.take(now_.vertices, vertices);
+    triangle_runs_.take(now_.triangles, triangles);
+}
+
 /// Triangles with corners changed in a range of splits: of whole intervals from the checkpoints.
 void LiveBuffers::mark_triangles(std::size_t from_level, const Ends& from, std::size_t to_level,
                                  const Ends& to) {
@@ -176,10 +181,11 @@ void LiveBuffers::mark_triangles(std::size_t from_level, const Ends& from, std::
             const std::uint32_t corner = corner_bytes_ == 3 ? load<3>(p) : load<4>(p);
             first = std::min(first, corner);
             last = std::max(last, corner);
+            if (tracking_) triangle_runs_.mark(corner / 3);
         }
     };
     const std::size_t a = (from_level + kInterval - 1) / kInterval, b = to_level / kInterval;
-    if (a >= b) {
+    if (a >= b || tracking_) {
         scan(from.corners, to.corners);
     } else {
         scan(from.corners, checkpoints_[a].ends.corners);
@@ -257,6 +263,8 @@ void LiveBuffers::exchange(std::span<const std::uint32_t> vertices, std::size_t 
         dirty_.vertices_begin = std::min(dirty_.vertices_begin, vertex);
         dirty_.vertices_end = std::max(dirty_.vertices_end, vertex + 1);
     }
+    if (tracking_)
+        for (const std::uint32_t vertex : vertices) vertex_runs_.mark(vertex);
 }
 
 /// Moves of the splits between two levels: differences, so that their order is of no account. Their vertices
@@ -299,10 +307,12 @@ void LiveBuffers::refine(std::size_t splits) {
     if (to.vertices > now_.vertices) {
         dirty_.vertices_begin = std::min(dirty_.vertices_begin, now_.vertices);
         dirty_.vertices_end = std::max(dirty_.vertices_end, to.vertices);
+        if (tracking_) vertex_runs_.mark(now_.vertices, to.vertices);
     }
     if (to.triangles > now_.triangles) {
         dirty_.triangles_begin = std::min(dirty_.triangles_begin, now_.triangles);
         dirty_.triangles_end = std::max(dirty_.triangles_end, to.triangles);
+        if (tracking_) triangle_runs_.mark(now_.triangles, to.triangles);
     }
     level_ = level;
     now_ = to;
