@@ -64,7 +64,8 @@ Result<double> feed(std::span<const std::byte> file, LiveBuffers& live, double& 
     auto decoder = BlockDecoder::begin(file);
     if (!decoder) return decoder.error();
     const FileInfo& info = decoder->info();
-    live.begin(decoder->mesh(), info.vertices, info.triangles, info.splits, info.corner_changes, info.moves);
+    live.begin(decoder->mesh(), info.vertices, info.triangles, info.splits, info.corner_changes, info.moves,
+               info.lossless ? PlaceGrid{} : PlaceGrid{info.lattice_origin, info.lattice_step});
     for (const BlockInfo& block : info.blocks) {
         const Status status = decoder->decode(file.subspan(block.offset, block.bytes));
         if (!status) return status.error();
