@@ -124,7 +124,7 @@ TEST_CASE("Document: paint on a coarse level lands on all that is split off from
     auto d = whale();
     d->go_to(d->level_for_ratio(0.1));
     d->painting().add_region("a", 0);
-    const auto hit = nearest(d->live().positions(), d->live().triangles(), {1.9, 0, 0}, 1);
+    const auto hit = d->nearest({1.9, 0, 0}, 1);
     REQUIRE(hit);
     d->painting().begin();
     d->dab(*hit, {0.5, 1, 1, 0});
@@ -164,7 +164,7 @@ TEST_CASE("Document: paint on a coarse level lands on all that is split off from
 TEST_CASE("Document: mirrored dabs, erasing, saving and loading") {
     auto d = whale();
     d->painting().add_region("a", 0);
-    const auto hit = nearest(d->live().positions(), d->live().triangles(), {0.5, 0, 0.5}, 1);
+    const auto hit = d->nearest({0.5, 0, 0.5}, 1);
     REQUIRE(hit);
     Brush brush{0.3, 1, 1, 4};
     d->painting().begin();

@@ -82,6 +82,7 @@ Result<std::unique_ptr<Document>> Document::open(Source source, bake::CollapseOp
         if (!result) return result.error();
         record = std::move(result->mesh);
     }
+    d.closed_ = studio::closed(d.source_.mesh.positions, d.source_.mesh.triangles);
     d.adopt(std::move(*record));
     d.go_to(d.live_->max_level());
     return document;
@@ -101,6 +102,22 @@ void Document::go_to(std::size_t level) {
     if (level == live_->level()) return;
     live_->go_to(level);
     surface_.reset();
+}
+
+std::vector<Triangle> Document::take_repainted() {
+    std::vector<std::uint32_t> triangles;
+    const std::uint32_t alive = vertices_at(live_->state(), live_->level());
+    for (const std::uint32_t origin : painting_.take_changed()) {
+        const std::uint32_t v = record_of_[origin];
+        if (v >= alive) continue;
+        const auto star = surface().star(v);
+        triangles.insert(triangles.end(), star.begin(), star.end());
+    }
+    std::sort(triangles.begin(), triangles.end());
+    triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
+    std::vector<Triangle> found;
+    for (const std::uint32_t t : triangles) found.push_back(live_->triangles()[t]);
+    return found;
 }
 
 Surface& Document::surface() {
@@ -148,9 +165,7 @@ void Document::dab(const Hit& hit, const Brush& brush) {
         if (!(brush.mirror & (1u << axis))) continue;
         for (std::size_t i = 0, n = points.size(); i < n; ++i) {
             points.push_back(mirrored(points[i], box_, axis));
-            if (const auto other =
-                    nearest(live_->positions(), live_->triangles(), points.back(), brush.radius))
-                paint(*other);
+            if (const auto other = surface().nearest(points.back(), brush.radius)) paint(*other);
         }
     }
 }
@@ -201,6 +216,9 @@ void Document::adopt(ProgressiveMesh record) {
     const double ratio_shown = live_ ? ratio() : 1;
     surface_.reset();
     origins_ = bake::record_origins(source_.mesh, record);
+    record_of_.assign(source_.mesh.positions.size(), kNoVertex);
+    for (std::uint32_t v = 0; v < origins_.size(); ++v)
+        if (origins_[v] != kNoVertex) record_of_[origins_[v]] = v;
     full_ = cut(record, record.splits.size());
     const std::size_t n = record.positions.size();
     child_starts_.assign(n + 1, 0);

@@ -58,6 +58,15 @@ class Document {
 
     Painting& painting() { return painting_; }
     const Painting& painting() const { return painting_; }
+    /// What a ray meets, or what is next to a point, at the level shown. The first call at a level makes a
+    /// search tree, if prepare() has not.
+    std::optional<Hit> pick(const Ray& ray) { return surface().pick(ray); }
+    std::optional<Hit> nearest(Double3 point, double reach) { return surface().nearest(point, reach); }
+    void prepare() { surface().prepare(); }
+    /// The level's triangles with a corner whose mark has changed since the last call.
+    std::vector<Triangle> take_repainted();
+    /// The model bounds a volume: from outside nobody sees a back side.
+    bool closed() const { return closed_; }
     /// Marks the vertices of the level that the brush reaches around the hit, and all that is split off from
     /// them. Between painting().begin() and end().
     void dab(const Hit& hit, const Brush& brush);
@@ -100,7 +109,8 @@ class Document {
     bake::CollapseOptions options_;
     Box box_;
     std::unique_ptr<LiveMesh> live_;
-    std::vector<std::uint32_t> origins_;
+    std::vector<std::uint32_t> origins_, record_of_;
+    bool closed_ = false;
     std::vector<std::uint32_t> child_starts_, children_;  // of the record's vertices
     Mesh full_;                                           // in the record's numbers
     Painting painting_;

@@ -107,7 +107,11 @@ class StudioWindow {
     void show_pane(Pane& pane, std::size_t level);
     void dab(int x, int y, bool erase);
     void click_select(int x, int y);
-    std::optional<Hit> pick_at(int x, int y) const;
+    std::optional<Hit> pick_at(int x, int y);
+    bool eye_outside() const;
+    /// Draws only what the stroke has changed since the last picture, over it.
+    void draw_stroke();
+    void draw_at_full_level();
     bool in_left_pane(int x) const;
     int left_width() const;
     void move();
@@ -151,7 +155,8 @@ class StudioWindow {
     int dragging_ = kNothing;  // a slider
     bool moving_ = false, question_ = false;
     double moved_at_ = 0;
-    double budget_ = 30000;  // triangles that a moving picture may have
+    double budget_ = 150000;  // triangles that a moving picture may have
+    bool patchable_ = false;  // the picture that is there can take a stroke's patches
     bool shown_coarse_ = false, panel_stale_ = true;
     std::string message_;
 };
