@@ -215,6 +215,9 @@ int MeshProp::RenderOpaqueGeometry(vtkViewport* viewport) {
     auto* window = vtkOpenGLRenderWindow::SafeDownCast(renderer->GetRenderWindow());
     upload();
     vtkOpenGLState* state = window->GetState();
+    // A software renderer takes twice as long to blend as to write.
+    const vtkOpenGLState::ScopedglEnableDisable keep_blending(state, GL_BLEND);
+    state->vtkglDisable(GL_BLEND);
     state->vtkglEnable(GL_DEPTH_TEST);
     state->vtkglDepthMask(GL_TRUE);
     state->vtkglDepthFunc(GL_LEQUAL);
