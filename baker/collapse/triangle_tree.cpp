@@ -253,12 +253,11 @@ TriangleTree::Meeting TriangleTree::first_met(Double3 from, Double3 direction) c
         if (node.count) {
             for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
                 const Triangle& t = mesh_.triangles[triangle_at(i)];
-                const double d = distance_along(from, direction, to_double(mesh_.positions[t[0]]),
-                                                to_double(mesh_.positions[t[1]]),
-                                                to_double(mesh_.positions[t[2]]));
-                if (d < best.distance ||
-                    (d == best.distance && d < std::numeric_limits<double>::infinity() &&
-                     triangle_at(i) < best.triangle))
+                const double d =
+                    distance_along(from, direction, to_double(mesh_.positions[t[0]]),
+                                   to_double(mesh_.positions[t[1]]), to_double(mesh_.positions[t[2]]));
+                if (d < best.distance || (d == best.distance && d < std::numeric_limits<double>::infinity() &&
+                                          triangle_at(i) < best.triangle))
                     best = {d, triangle_at(i)};
             }
             continue;

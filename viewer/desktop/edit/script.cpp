@@ -142,7 +142,7 @@ Json Runner::stroke(const Json& step) {
             } else {
                 brush.radius = radius;
                 hit = document_.nearest(point(p, "a point"),
-                              std::max(radius, 1e-3 * document_.box().diagonal()));
+                                        std::max(radius, 1e-3 * document_.box().diagonal()));
             }
             if (hit)
                 document_.dab(*hit, brush);
@@ -165,8 +165,7 @@ Json Runner::select(const Json& step) {
         changed = document_.select_sharper_than(number(step, "degrees", 40.0, 0, 180), number_of);
     } else if (by == "component" || by == "material") {
         if (!step.contains("at")) fault("wants 'at', a point in the object");
-        const auto hit = document_.nearest(
-                                 point(step["at"], "'at'"), 0.05 * document_.box().diagonal());
+        const auto hit = document_.nearest(point(step["at"], "'at'"), 0.05 * document_.box().diagonal());
         if (!hit) fault("nothing is at 'at'");
         changed = by == "component" ? document_.select_component(hit->vertex, number_of)
                                     : document_.select_material(hit->triangle, number_of);

@@ -174,8 +174,7 @@ bool closed(std::span<const Float3> positions, std::span<const Triangle> triangl
         for (std::size_t k = 0; k < 3; ++k) {
             const std::uint32_t a = place[t[k]], b = place[t[(k + 1) % 3]];
             if (a == b) continue;
-            edges.push_back(
-                {std::uint64_t{std::min(a, b)} << 32 | std::max(a, b), a < b ? 1 : -1});
+            edges.push_back({std::uint64_t{std::min(a, b)} << 32 | std::max(a, b), a < b ? 1 : -1});
         }
         volume += dot(at(positions[t[0]]) - origin,
                       cross(at(positions[t[1]]) - origin, at(positions[t[2]]) - origin));

@@ -148,11 +148,13 @@ std::vector<Line> StudioWindow::lines() const {
     all.push_back({button("Undo", kUndo, false, painting.can_undo()),
                    button("Redo", kRedo, false, painting.can_redo())});
     all.push_back({title("Bake")});
-    if (rebake_.running())
+    if (busy()) {
+        const double done = search_.running() ? search_.progress() : rebake_.progress();
         all.push_back(
-            {slider(fmt::format("baking {:.0f} %", 100 * rebake_.progress()), kNothing, rebake_.progress()),
+            {slider(fmt::format("{} {:.0f} %", search_.running() ? "searching" : "baking", 100 * done),
+                    kNothing, done),
              button("Cancel", kCancel)});
-    else
+    } else
         all.push_back({button(painting.version() != baked_version_ ? "Apply (Return)" : "Apply: up to date",
                               kApply, painting.version() != baked_version_)});
     all.push_back({button(painting.unsaved() ? "Save *" : "Save", kSave), button("Load", kLoad),
@@ -323,8 +325,7 @@ void StudioWindow::act(int action, double value) {
         case kApply:
             return apply();
         case kCancel:
-            rebake_.cancel();
-            say("the bake was cancelled");
+            cancel();
             break;
         case kSave:
             save();
@@ -396,8 +397,9 @@ void StudioWindow::key(const std::string& name) {
     if (name == "Control+q") return asked_to_close();
     if (name == "Escape") {
         pending_ = kNothing;
-        if (rebake_.running()) act(kCancel, 0);
-        return say("");
+        if (busy()) return act(kCancel, 0);
+        say("");
+        return draw();
     }
     if (name == "Left" && level_ > 0) return set_level(level_ - 1);
     if (name == "Right") return set_level(level_ + 1);

@@ -118,8 +118,8 @@ void Panel::set(const std::vector<Line>& lines, int height) {
     p.height = height;
     bool all = p.places.size() != p.drawn.size() || height != p.drawn_height;
     for (std::size_t i = 0; i < p.places.size() && !all; ++i)
-        all = p.places[i].x != p.drawn[i].x || p.places[i].y != p.drawn[i].y || p.places[i].w != p.drawn[i].w ||
-              p.places[i].h != p.drawn[i].h;
+        all = p.places[i].x != p.drawn[i].x || p.places[i].y != p.drawn[i].y ||
+              p.places[i].w != p.drawn[i].w || p.places[i].h != p.drawn[i].h;
     p.renderer->SetPreserveColorBuffer(!all);
     std::size_t used = 0;
     for (std::size_t i = 0; i < p.places.size(); ++i) {

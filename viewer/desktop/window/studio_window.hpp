@@ -126,6 +126,12 @@ class StudioWindow {
     void apply();
     void take_bake();
     void keep();
+    void take_search();
+    void cancel();
+    /// A bake or a search is going on.
+    bool busy() const { return rebake_.running() || search_.running(); }
+    /// The panel alone, beside the picture that is there.
+    void draw_panel();
     void say(const std::string& text);
     void help();
 
@@ -139,6 +145,9 @@ class StudioWindow {
     vtkNew<vtkTextActor> status_;
     Pane left_, right_;
     Rebake rebake_;
+    WeightSearch search_;
+    bool first_pending_ = false;  // nothing of the bake that runs was shown yet
+    double progress_drawn_ = 0;
     std::uint64_t baked_version_ = 0;  // of the paint, in the record
 
     Look look_;

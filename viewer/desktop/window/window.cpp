@@ -239,6 +239,18 @@ void StudioWindow::draw_stroke() {
     left_.view->patch({});
 }
 
+void StudioWindow::draw_panel() {
+    for (const Pane* pane : {&left_, &right_}) pane->renderer->SetDraw(false);
+    sheet_renderer_->SetDraw(false);
+    panel_renderer_->SetDraw(panel_stale_);
+    window_->Render();
+    if (panel_stale_) panel_->drawn();
+    panel_stale_ = false;
+    left_.renderer->SetDraw(true);
+    right_.renderer->SetDraw(split_);
+    sheet_renderer_->SetDraw(true);
+}
+
 void StudioWindow::draw_at_full_level() {
     const double budget = budget_;
     budget_ = 1e12;
@@ -281,13 +293,15 @@ void StudioWindow::camera_moves() {
 
 void StudioWindow::tick() {
     take_bake();
-    if (rebake_.running()) refresh_panel();
+    take_search();
     if (moving_ && !stroke_ && dragging_ == kNothing && seconds_now() - moved_at_ > kSettle) {
         moving_ = false;
         draw();
         document_->prepare();
-    } else if (rebake_.running()) {
-        draw();
+    } else if (busy() && seconds_now() - progress_drawn_ > 0.1) {
+        progress_drawn_ = seconds_now();
+        refresh_panel();
+        draw_panel();
     }
 }
 
@@ -391,7 +405,7 @@ void StudioWindow::run() {
     recover();
     draw();
     document_->prepare();
-    interactor_->CreateRepeatingTimer(50);
+    interactor_->CreateRepeatingTimer(15);
     interactor_->Start();
 }
 
