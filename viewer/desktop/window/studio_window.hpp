@@ -22,6 +22,14 @@
 
 namespace vsplit::studio {
 
+/// The process' one window, and its events. VTK 9.1 keeps a list of its interactors on X from which those
+/// that are gone are not taken, so that there must be one for all that is shown.
+struct Shell {
+    vtkNew<vtkRenderWindow> window;
+    vtkNew<vtkRenderWindowInteractor> interactor;
+};
+Shell& shell();
+
 /// What cells of the panel do. Regions are kRegion + number.
 enum Action : int {
     kNothing = 0,
@@ -77,6 +85,9 @@ struct Pane {
 class StudioWindow {
   public:
     StudioWindow(std::unique_ptr<Document> document, const WindowOptions& options);
+    ~StudioWindow();
+    StudioWindow(const StudioWindow&) = delete;
+    StudioWindow& operator=(const StudioWindow&) = delete;
 
     void run();
     /// Measures frames, strokes and bakes; prints one line each.
@@ -137,8 +148,8 @@ class StudioWindow {
 
     std::unique_ptr<Document> document_;
     WindowOptions options_;
-    vtkNew<vtkRenderWindow> window_;
-    vtkNew<vtkRenderWindowInteractor> interactor_;
+    vtkRenderWindow* window_ = shell().window;
+    vtkRenderWindowInteractor* interactor_ = shell().interactor;
     vtkNew<vtkRenderer> panel_renderer_, sheet_renderer_;
     std::unique_ptr<Panel> panel_;
     std::unique_ptr<Sheet> sheet_;

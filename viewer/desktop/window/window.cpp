@@ -96,6 +96,22 @@ double seconds_now() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
+Shell& shell() {
+    static Shell one;
+    return one;
+}
+
+StudioWindow::~StudioWindow() {
+    rebake_.cancel();
+    search_.cancel();
+    for (Pane* pane : {&left_, &right_}) pane->view.reset();
+    window_->Finalize();
+    for (vtkRenderer* renderer :
+         {panel_renderer_.Get(), left_.renderer.Get(), right_.renderer.Get(), sheet_renderer_.Get()})
+        window_->RemoveRenderer(renderer);
+    interactor_->SetInteractorStyle(nullptr);
+}
+
 StudioWindow::StudioWindow(std::unique_ptr<Document> document, const WindowOptions& options)
     : document_(std::move(document)), options_(options) {
     window_->SetSize(options.width, options.height);
