@@ -8,6 +8,7 @@
 #include <set>
 #include <thread>
 
+#include "bindings.hpp"
 #include "document.hpp"
 #include "family.hpp"
 #include "heat.hpp"
@@ -306,4 +307,34 @@ TEST_CASE("What a dab changes is what is drawn again") {
     REQUIRE(std::set<Triangle>(again.begin(), again.end()) == expected);
     REQUIRE(again.size() == expected.size());
     REQUIRE(!again.empty());
+}
+
+TEST_CASE("The help tells every key and all that the mouse does, and no key does two things") {
+    const std::string help = help_text();
+    std::set<std::string_view> keys;
+    for (const Binding& binding : bindings()) {
+        CAPTURE(binding.key);
+        REQUIRE(keys.insert(binding.key).second);
+        REQUIRE(binding.action != kNothing);
+        REQUIRE(action_of(binding.key) == binding.action);
+        REQUIRE(help.find(std::string(binding.shown)) != help.npos);
+        REQUIRE(help.find(std::string(binding.what)) != help.npos);
+        // A letter is shown as it is printed on the key.
+        if (binding.key.size() == 1 && std::isalpha(static_cast<unsigned char>(binding.key[0])))
+            REQUIRE(binding.shown.find(char(std::toupper(binding.key[0]))) != binding.shown.npos);
+    }
+    for (const Gesture& gesture : gestures()) {
+        REQUIRE(help.find(std::string(gesture.how)) != help.npos);
+        REQUIRE(help.find(std::string(gesture.what)) != help.npos);
+    }
+    // All that the panel does but its sliders has a key.
+    const std::set<int> sliders{kRatio,   kError, kRightRatio,  kKeepShare, kKeepRatio,
+                                kSize, kStrength, kSharpDegrees};
+    std::set<int> actions;
+    for (const Binding& binding : bindings()) actions.insert(binding.action);
+    for (int action = kNothing + 1; action <= kClose; ++action) {
+        CAPTURE(action);
+        REQUIRE((actions.contains(action) || sliders.contains(action)));
+    }
+    REQUIRE(!action_of("F12"));
 }

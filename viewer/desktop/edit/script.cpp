@@ -281,7 +281,13 @@ Json Runner::run(const Json& step) {
         write(step, document_.encode_weights());
     } else if (what == "refine") {
         // What is shown: the marked regions in full, the rest as it is.
-        const Mesh mesh = document_.refined_in_place();
+        Mesh mesh = document_.refined_in_place();
+        if (document_.placed()) {
+            Shown shown = document_.show(mesh.positions, mesh.triangles, mesh.groups);
+            mesh = {};
+            mesh.positions = std::move(shown.positions);
+            mesh.triangles = std::move(shown.triangles);
+        }
         write(step, bake::encode_ply(mesh));
         add({{"vertices", mesh.positions.size()}, {"triangles", mesh.triangles.size()}});
     } else if (what == "export") {

@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "../edit/bindings.hpp"
 #include "../edit/rebake.hpp"
 #include "panel.hpp"
 #include "view.hpp"
@@ -29,50 +30,6 @@ struct Shell {
     vtkNew<vtkRenderWindowInteractor> interactor;
 };
 Shell& shell();
-
-/// What cells of the panel do. Regions are kRegion + number.
-enum Action : int {
-    kNothing = 0,
-    kRatio,
-    kError,
-    kRightRatio,
-    kSplit,
-    kSmooth,
-    kFlat,
-    kWire,
-    kHeatNone,
-    kHeatError,
-    kHeatWeight,
-    kHeatCurvature,
-    kHeatQuality,
-    kRefine,
-    kReset,
-    kAddRegion,
-    kLighter,
-    kHeavier,
-    kAutomatic,
-    kKeepShare,
-    kKeepRatio,
-    kKeep,
-    kSize,
-    kStrength,
-    kMirrorX,
-    kMirrorY,
-    kMirrorZ,
-    kPart,
-    kMaterial,
-    kSharp,
-    kSharpDegrees,
-    kUndo,
-    kRedo,
-    kApply,
-    kCancel,
-    kSave,
-    kLoad,
-    kExport,
-    kHelp,
-    kRegion = 1000
-};
 
 /// A level of the document's record in a viewport.
 struct Pane {

@@ -194,7 +194,14 @@ void StudioWindow::show_pane(Pane& pane, std::size_t level) {
         const Mesh mesh = document_->refined_in_place();
         std::vector<Rgb> colours(mesh.positions.size());
         for (std::uint32_t v = 0; v < colours.size(); ++v) colours[v] = plain_colour(*document_, v);
-        pane.view->show(mesh.positions, mesh.triangles, colours, look_);
+        if (document_->placed()) {
+            const Shown shown = document_->show(mesh.positions, mesh.triangles, mesh.groups);
+            std::vector<Rgb> theirs;
+            for (const std::uint32_t v : shown.vertex_of) theirs.push_back(colours[v]);
+            pane.view->show(shown.positions, shown.triangles, theirs, look_);
+        } else {
+            pane.view->show(mesh.positions, mesh.triangles, colours, look_);
+        }
         pane.view->legend(nullptr, Heat::kNone);
         pane.caption->SetInput(
             fmt::format("{} triangles: marked regions refined in place", mesh.triangles.size()).c_str());
@@ -203,13 +210,13 @@ void StudioWindow::show_pane(Pane& pane, std::size_t level) {
     HeatMap map;
     // Heat takes longer than a frame: while things move, what is known is regions.
     const Heat heat = moving_ && look_.heat == Heat::kError ? Heat::kNone : look_.heat;
-    const std::vector<Rgb> colours = level_colours(*document_, *pane.live, heat, &map);
+    const LevelPicture level_shown = level_picture(*document_, *pane.live, heat, &map);
     Look look = look_;
     look.heat = heat;
     look.quick = moving_ && now > 0 && pane.live->triangles().size() > kSmoothEnough;
     look.closed = document_->closed() && eye_outside();
     if (moving_ && pane.live->triangles().size() > 20000) look.wireframe = false;
-    pane.view->show(pane.live->positions(), pane.live->triangles(), colours, look);
+    pane.view->show(level_shown.positions, level_shown.triangles, level_shown.colours, look);
     pane.view->legend(heat == Heat::kNone ? nullptr : &map, heat);
     const ProgressiveMesh& record = pane.live->state();
     const double ratio =
@@ -239,7 +246,7 @@ void StudioWindow::draw_stroke() {
     const std::vector<Triangle> triangles = document_->take_repainted();
     move();
     if (triangles.empty()) return;
-    left_.view->recolour(level_colours(*document_, *left_.live, Heat::kNone));
+    left_.view->recolour(level_picture(*document_, *left_.live, Heat::kNone).colours);
     left_.view->patch(triangles);
     left_.renderer->PreserveColorBufferOn();
     left_.renderer->PreserveDepthBufferOn();

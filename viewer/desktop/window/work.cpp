@@ -70,8 +70,10 @@ void StudioWindow::load() {
 }
 
 void StudioWindow::export_all() {
-    const std::string path = beside(".studio.pmesh");
-    auto bytes = document_->encode(".pmesh", 1);
+    // A scene goes out with its nodes and materials.
+    const std::string extension = document_->source().scene ? ".glb" : ".pmesh";
+    const std::string path = beside(".studio" + extension);
+    auto bytes = document_->encode(extension, 1);
     if (!bytes) return say(bytes.error().describe());
     if (write(path, *bytes, true))
         say(document_->painting().version() == baked_version_
