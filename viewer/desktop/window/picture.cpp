@@ -68,8 +68,8 @@ Result<std::vector<std::byte>> picture(const Document& document, const Camera& c
     Studio studio(camera.width, camera.height);
     MeshView view(studio.renderer);
     HeatMap map;
-    const std::vector<Rgb> colours = level_colours(document, document.live(), look.heat, &map);
-    view.show(document.live().positions(), document.live().triangles(), colours, look);
+    const LevelPicture level = level_picture(document, document.live(), look.heat, &map);
+    view.show(level.positions, level.triangles, level.colours, look);
     view.legend(look.heat == Heat::kNone ? nullptr : &map, look.heat);
     set_camera(studio.renderer, camera);
     return studio.png();
