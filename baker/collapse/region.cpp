@@ -176,6 +176,14 @@ Region::Outcome Region::attempt(std::uint32_t u, const Option& option, Bucket bu
     } else if (!guards_.keeps_topology(star_)) {
         return Outcome::kWaits;
     }
+    if (!state_.batch_of.empty()) {
+        const std::uint32_t parent = parent_of(star_, option), child = star_.u + star_.v - parent;
+        if (state_.locks(child) ||
+            (state_.options.placement != Placement::kEndpoint && state_.locks(parent))) {
+            cost = float(option.candidate.cost);
+            return Outcome::kNextBatch;
+        }
+    }
     const double weight = 0.5 * (double(mesh_.vertex(u).weight) + double(mesh_.vertex(option.other).weight));
     if (mesh_.has_wedges()) wedge_star_.gather(mesh_, star_, parent_of(star_, option));
     Deviation deviation;
@@ -239,6 +247,8 @@ Region::Outcome Region::attempt(std::uint32_t u, const Option& option, Bucket bu
 std::uint32_t Region::parent_of(const EdgeStar& star, const Option& option) const {
     if (option.fold == Fold::kIntoFirst) return star.u;
     if (option.fold == Fold::kIntoSecond) return star.v;
+    if (!state_.batch_of.empty() && state_.options.placement == Placement::kEndpoint)
+        return nearer_end(star, option.candidate.place);
     // A curve's vertex stays; else the one with the larger star, since the other's corners change.
     if (mesh_.kind(star.u) != mesh_.kind(star.v))
         return mesh_.kind(star.v) == VertexKind::kCurve ? star.v : star.u;
@@ -267,6 +277,14 @@ void Region::apply(const EdgeStar& star, const Option& option, Float3 place, con
                    bool relaxed) {
     const std::uint32_t parent = parent_of(star, option), child = star.u + star.v - parent;
     if (mesh_.has_wedges()) fold_wedges(star, mesh_.work(place));
+    if (!state_.batch_of.empty()) {
+        const auto lock_ring = [&](std::uint32_t v) {
+            for (const std::uint32_t t : mesh_.star(v))
+                for (const std::uint32_t w : mesh_.triangle(t)) state_.batch_of[w] = state_.batch;
+        };
+        lock_ring(child);
+        if (state_.options.placement != Placement::kEndpoint) lock_ring(parent);
+    }
     const TrianglePart<double> part = update_ring(mesh_, star);
     const std::size_t before = record_.removed.size();
     const Float3 parent_position = mesh_.raw_position(parent);
@@ -400,6 +418,7 @@ void Region::process(std::uint32_t u, Bucket bucket) {
     // Most often the target is still the best; its price is that of today.
     std::uint32_t tried = kNoVertex;
     float tried_cost = kNeverCost;
+    bool next_batch = false;
     Target& target = state_.targets[u];
     if (target.vertex != kNoVertex && mesh_.kind(target.vertex) != VertexKind::kDead) {
         if (const Fold fold = fold_of(u, target.vertex); fold != Fold::kNever) {
@@ -410,6 +429,7 @@ void Region::process(std::uint32_t u, Bucket bucket) {
                 const Outcome outcome = attempt(u, option, bucket, tried_cost);
                 if (outcome == Outcome::kDone) return;
                 if (outcome == Outcome::kElsewhere) return put_off(u, bucket);
+                next_batch = outcome == Outcome::kNextBatch;
             } else if (cost <= target.runner_up) {
                 target.cost = cost;
                 queue_.push(u, bucket_of(cost));
@@ -431,13 +451,15 @@ void Region::process(std::uint32_t u, Bucket bucket) {
             const Outcome outcome = attempt(u, {v, fold, evaluate(u, v, fold)}, bucket, cost);
             if (outcome == Outcome::kDone) return;
             if (outcome == Outcome::kElsewhere) return put_off(u, bucket);
+            next_batch |= outcome == Outcome::kNextBatch;
         }
         wait.offer(v, cost);
         listed_.costs[at] = kNeverCost;  // not again
     }
     for (std::size_t i = 0; i < listed_.others.size(); ++i) wait.offer(listed_.others[i], listed_.costs[i]);
     target = wait;
-    if (wait.vertex != kNoVertex) queue_.push(u, bucket_of(wait.cost));
+    if (wait.vertex != kNoVertex)
+        queue_.push(u, std::max(bucket_of(wait.cost), next_batch ? end_ : Bucket{0}));
 }
 
 void Region::process_component(std::uint32_t component, Bucket bucket) {
@@ -454,6 +476,9 @@ void Region::process_component(std::uint32_t component, Bucket bucket) {
         return;
     }
     const auto vertices = state_.components.live_vertices(mesh_, component);
+    if (!state_.batch_of.empty() &&
+        std::any_of(vertices.begin(), vertices.end(), [&](std::uint32_t v) { return state_.locks(v); }))
+        return queue_.push(mesh_.vertex_count() + component, std::max(bucket, end_));
     std::vector<std::uint32_t> triangles;
     for (const std::uint32_t v : vertices) {
         const auto star = mesh_.star(v);

@@ -64,6 +64,11 @@ struct CollapseState {
     std::vector<float> weights;   ///< Empty: none painted.
     std::vector<Target> targets;  ///< kNoVertex: list all again.
     std::vector<Bucket> slots;    ///< Where each vertex waits, then each component.
+    /// If there are batches: the last batch, from 1, in which each vertex's star changed. Until the next it
+    /// may not go.
+    std::vector<std::uint32_t> batch_of;
+    std::uint32_t batch = 0;
+    bool locks(std::uint32_t v) const { return batch_of[v] == batch; }
 };
 
 /// What it costs now that a component vanishes, working units.
@@ -122,7 +127,7 @@ class Region {
         }
     };
 
-    enum class Outcome : std::uint8_t { kDone, kWaits, kElsewhere };
+    enum class Outcome : std::uint8_t { kDone, kWaits, kElsewhere, kNextBatch };
 
     /// Each edge is priced once: for the end that comes first, which waits in the queue with it.
     static bool owns(std::uint32_t u, std::uint32_t v) { return u < v; }
@@ -144,7 +149,8 @@ class Region {
     void prefetch() const;
     void process(std::uint32_t u, Bucket bucket);
     void process_component(std::uint32_t component, Bucket bucket);
-    /// kWaits sets `cost` to what it has to wait for (infinity: never as things are).
+    /// kWaits sets `cost` to what it has to wait for (infinity: never as things are); kNextBatch to what it
+    /// costs.
     Outcome attempt(std::uint32_t u, const Option& option, Bucket bucket, float& cost);
     /// Which end stays.
     std::uint32_t parent_of(const EdgeStar& star, const Option& option) const;

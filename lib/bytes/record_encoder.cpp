@@ -247,7 +247,7 @@ void RecordEncoder::code_splits(Coder& coder, const std::function<void(const Spl
     for (const Sweep& sweep : sweeps_) {
         const auto marked = std::count_if(sweep.steps.begin(), sweep.steps.end(),
                                           [](const Sweep::Step& step) { return step.primary != kNoVertex; });
-        SweepHead head{static_cast<std::uint32_t>(marked),
+        SweepHead head{sweep.kind, static_cast<std::uint32_t>(marked),
                        static_cast<std::uint32_t>(sweep.steps.size()) - static_cast<std::uint32_t>(marked),
                        std::bit_cast<std::uint32_t>(sweep.error)};
         const char* fault = codec_.code_head(coder, head);

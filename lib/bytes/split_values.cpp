@@ -396,15 +396,14 @@ void SplitCodec::apply_run(const SplitPlan& plan) {
     LiveVertex &parent = live.vertices[p], &born = live.vertices[child];
     Lattice3 stays, goes;  // by how much the centre of a sector moves: the parent's, the child's
     for (std::size_t k = 0; k < 3; ++k) stays[k] = parent.at[k] - was[k], goes[k] = birth.at[k] - was[k];
+    const std::uint32_t past = begin + length, end = star_.closed && past >= n ? past - n : past;
     const auto taken = [&](std::uint32_t i) { return (i >= begin ? i : i + n) - begin < length; };
     kept_.clear();
     run_corners_.clear();
     std::array<std::uint32_t, 3> born_ring{}, parent_ring{};
     bool before = star_.closed && taken(n - 1);
     for (std::uint32_t i = 0; i < ring; ++i) {
-        LiveVertex& here = live.vertices[star_.ring[i]];
-        here.touched = sweep_;
-        asks_.add(star_.ring[i]);
+        LiveVertex& here = touch(star_.ring[i]);
         // The sectors on both sides of ring vertex i.
         const bool is_left = star_.closed || i > 0, is_right = star_.closed || i < n;
         const bool right = is_right && taken(i);
@@ -423,6 +422,10 @@ void SplitCodec::apply_run(const SplitPlan& plan) {
             born_ring[k] += in * at;
             parent_ring[k] += (sectors - in) * at;
         }
+        // What the batch has changed for good: the run, and the wings.
+        here.locked += std::uint32_t{is_left && before} + std::uint32_t{right} +
+                       std::uint32_t{run_.first_wing && i == begin} +
+                       std::uint32_t{run_.last_wing && i == end};
         if (is_right) {
             const std::uint32_t t = star_.sector[i];
             Triangle& c = live.triangles[t];
@@ -434,13 +437,25 @@ void SplitCodec::apply_run(const SplitPlan& plan) {
     }
     born.ring = born_ring;
     parent.ring = parent_ring;
-    born.acted = born.touched = parent.acted = parent.touched = sweep_;
-    asks_.add(p);
-    asks_.add(child);
+    touch(child);
+    touch(p).locked += std::uint32_t{run_.first_wing} + std::uint32_t{run_.last_wing};
+    born.acted = parent.acted = sweep_;
     live.relink(p, kept_);
     live.relink(child, run_corners_);
     for (const Triangle& triangle : plan.triangles) live.add_triangle(triangle);
     if (shape_.group_bits > 0) groups.insert(groups.end(), plan.groups.begin(), plan.groups.end());
+}
+
+void SplitCodec::count_locked(const SplitPlan& plan, std::uint32_t first) {
+    touched_.clear();
+    for (std::uint32_t v = first; v < live.vertex_count(); ++v)
+        for (const std::uint32_t corner : live.corners(v)) touched_.push_back(corner / 3);
+    for (std::size_t i = 0; i < plan.triangles.size(); ++i)
+        touched_.push_back(static_cast<std::uint32_t>(live.triangles.size() - 1 - i));
+    std::sort(touched_.begin(), touched_.end());
+    touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
+    for (const std::uint32_t t : touched_)
+        for (const std::uint32_t v : live.triangles[t]) ++live.vertices[v].locked;
 }
 
 void SplitCodec::apply(const SplitPlan& plan) {
@@ -472,8 +487,7 @@ void SplitCodec::apply(const SplitPlan& plan) {
         if (shape_.lossless) finer[move.vertex] = move.finer;
         std::copy_n(plan.move_values.begin() + static_cast<std::ptrdiff_t>(i * stride), stride,
                     values.begin() + static_cast<std::ptrdiff_t>(move.vertex * stride));
-        live.vertices[move.vertex].acted = sweep_;
-        asks_.add(move.vertex);
+        touch(move.vertex).acted = sweep_;
     }
     values.insert(values.end(), plan.birth_values.begin(), plan.birth_values.end());
     for (const SplitPlan::Birth& birth : plan.births) {
@@ -481,21 +495,16 @@ void SplitCodec::apply(const SplitPlan& plan) {
         if (shape_.lossless) finer.push_back(birth.finer);
     }
     const auto touch_ring = [&](std::uint32_t v) {
-        live.vertices[v].acted = live.vertices[v].touched = sweep_;
-        asks_.add(v);
+        touch(v).acted = sweep_;
         for (const std::uint32_t corner : scratch_)
-            for (const std::uint32_t w : live.triangles[corner / 3]) {
-                live.vertices[w].touched = sweep_;
-                asks_.add(w);
-            }
+            for (const std::uint32_t w : live.triangles[corner / 3]) touch(w);
     };
     std::uint32_t begin = 0;
     for (std::uint32_t i = 0; i < plan.births.size(); ++i) {
         const SplitPlan::Birth& birth = plan.births[i];
         const auto taken = std::span(plan.taken).subspan(begin, birth.taken_end - begin);
         begin = birth.taken_end;
-        live.vertices[first + i].acted = live.vertices[first + i].touched = sweep_;
-        asks_.add(first + i);
+        touch(first + i).acted = sweep_;
         if (birth.parent == kNoVertex) continue;
         if (plan.births.size() == 1 && star_.centre == birth.parent)
             scratch_ = star_.corners;  // as it was gathered for the cut
@@ -517,11 +526,9 @@ void SplitCodec::apply(const SplitPlan& plan) {
     for (std::size_t i = 0; i < plan.triangles.size(); ++i) {
         live.add_triangle(plan.triangles[i]);
         if (shape_.group_bits > 0) groups.push_back(plan.groups[i]);
-        for (const std::uint32_t v : plan.triangles[i]) {
-            live.vertices[v].touched = sweep_;
-            asks_.add(v);
-        }
+        for (const std::uint32_t v : plan.triangles[i]) touch(v);
     }
+    if (is_batch()) count_locked(plan, first);
     live.link_twins(first);
 }
 
