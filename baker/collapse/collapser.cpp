@@ -28,11 +28,9 @@ constexpr Bucket kWellBelow = 2 * kBucketsPerOctave;
 
 /// The share of the waiting vertices whose costs a batch spans: small meshes lose their shape sooner.
 double batch_quantile(std::uint32_t vertices) {
-    static const char* e = getenv("BQ");
-    double lo = .35, hi = .8, a = 1000, b = 20000;
-    if (e) sscanf(e, "%lf,%lf,%lf,%lf", &lo, &hi, &a, &b);
-    const double t = std::clamp(std::log(vertices / a) / std::log(b / a), 0.0, 1.0);
-    return lo + t * (hi - lo);
+    constexpr double kSmall = 1000, kLarge = 20000, kLeast = 0.35, kMost = 0.8;
+    const double t = std::clamp(std::log(vertices / kSmall) / std::log(kLarge / kSmall), 0.0, 1.0);
+    return kLeast + t * (kMost - kLeast);
 }
 
 double seconds_now() {
@@ -83,7 +81,7 @@ void Collapser::prepare(const Mesh& mesh) {
         state_.weights.reserve(state_.mesh.vertex_count());
         for (const std::uint32_t v : state_.mesh.input_vertices()) state_.weights.push_back(mesh.weights[v]);
     }
-    if (options.batches) state_.batch_of.assign(state_.mesh.vertex_count(), 0);
+    if (options.placement == Placement::kEndpoint) state_.batch_of.assign(state_.mesh.vertex_count(), 0);
     lock();
     for (std::uint32_t v = 0; v < state_.mesh.vertex_count() && state_.components.count() > 1; ++v)
         if (state_.mesh.kind(v) != VertexKind::kDead && !state_.weights.empty() && state_.weights[v] > 1)
@@ -293,10 +291,7 @@ bool Collapser::rounds(Bucket limit, const Between& between) {
             std::erase_if(alive_, [&](std::uint32_t v) { return mesh.kind(v) == VertexKind::kDead; });
         const auto [begin, end] = next_window(limit);
         if (begin == end) return true;
-        if (!state_.batch_of.empty()) {
-            if (batch_ends_.empty() || record_.size() > batch_ends_.back()) batch_ends_.push_back(record_.size());
-            ++state_.batch;
-        }
+        ++state_.batch;
         state_.mean_star = 12 * state_.area / std::max(mesh.live_triangles(), 1u);
         if (!between() || !round(begin, end, rounds_, between)) return false;
     }
@@ -369,10 +364,6 @@ ProgressiveMesh Collapser::finish(CollapseReport& report) {
     ProgressiveMesh mesh = input_ ? finish_with_wedges(record_, wedge_record_, state_.mesh, *state_.wedges,
                                                        *input_, state_.weights)
                                   : record_.finish(state_.mesh, state_.weights, nullptr);
-    // Splits go the other way.
-    for (std::size_t i = batch_ends_.size(); i-- > 0;)
-        if (batch_ends_[i] < mesh.splits.size())
-            mesh.batch_ends.push_back(std::uint32_t(mesh.splits.size() - batch_ends_[i]));
     // An error beyond the floats stays the largest of them, so that files hold finite numbers.
     const double unit = 1 / state_.mesh.scale();
     for (Split& split : mesh.splits)

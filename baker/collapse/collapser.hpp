@@ -50,7 +50,6 @@ class Collapser {
     std::vector<std::uint32_t> alive_;  // vertices, ascending; up to as many dead ones among them
     std::uint64_t vanished_ = 0, rounds_ = 0;
     std::uint64_t unused_vertices_ = 0;
-    std::vector<std::size_t> batch_ends_;  // in the record: where each batch begins
 };
 
 }  // namespace vsplit::bake

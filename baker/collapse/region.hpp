@@ -64,8 +64,9 @@ struct CollapseState {
     std::vector<float> weights;   ///< Empty: none painted.
     std::vector<Target> targets;  ///< kNoVertex: list all again.
     std::vector<Bucket> slots;    ///< Where each vertex waits, then each component.
-    /// If there are batches: the last batch, from 1, in which each vertex's star changed. Until the next it
-    /// may not go.
+    /// With placement at endpoints, rounds are batches, in which no triangle changes twice: a vertex whose
+    /// star has changed may not go until the next. So splits of one batch do not depend on each other, and a
+    /// file need not tell their order. Per vertex, the last batch that changed its star; empty: no batches.
     std::vector<std::uint32_t> batch_of;
     std::uint32_t batch = 0;
     bool locks(std::uint32_t v) const { return batch_of[v] == batch; }
@@ -152,10 +153,12 @@ class Region {
     /// kWaits sets `cost` to what it has to wait for (infinity: never as things are); kNextBatch to what it
     /// costs.
     Outcome attempt(std::uint32_t u, const Option& option, Bucket bucket, float& cost);
+    /// What the valences that it makes count on top of a collapse's cost, as a factor from 1 on.
+    double irregularity(const EdgeStar& star, std::uint32_t parent) const;
     /// Which end stays.
     std::uint32_t parent_of(const EdgeStar& star, const Option& option) const;
-    void apply(const EdgeStar& star, const Option& option, Float3 place, const Deviation& deviation,
-               bool relaxed);
+    void apply(const EdgeStar& star, const Option& option, std::uint32_t parent, Float3 place,
+               const Deviation& deviation, bool relaxed);
     /// After a relaxed fold: the kinds of vertices are others now.
     void classify_around(const EdgeStar& star);
     /// After a collapse: prices the new vertex's edges, and offers them to those neighbours who own them.

@@ -3,6 +3,7 @@
 #include "schedule.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <span>
 
 #include "ask_list.hpp"
@@ -12,6 +13,9 @@ namespace {
 
 /// How far a sweep reaches ahead in the record: so many splits for each vertex alive.
 constexpr double kReach = 0.7;
+
+/// A record made in batches has about three to five of them each time that its vertices double.
+constexpr std::size_t kBatchesADoubling = 8;
 
 /// Which splits of a record must come before which.
 class Dependencies {
@@ -141,20 +145,18 @@ class Batches {
         alive_ = mesh.base_vertices;
     }
 
+    /// Each as long as it can be; none if that makes too many of them.
     std::vector<Sweep> sweeps() {
         const auto count = static_cast<std::uint32_t>(mesh_.splits.size());
+        const std::size_t doublings = std::bit_width(mesh_.positions.size() / std::max(alive_, 1u));
         std::vector<Sweep> out;
-        std::size_t batch = 0;
         for (std::uint32_t first = 0, end = 0; first < count; first = end) {
-            while (batch < mesh_.batch_ends.size() && mesh_.batch_ends[batch] <= first) ++batch;
-            const std::uint32_t most = batch < mesh_.batch_ends.size()
-                                           ? std::min(mesh_.batch_ends[batch], count)
-                                           : count;
+            if (out.size() >= kBatchesADoubling * (doublings + 1)) return {};
             Sweep& sweep = out.emplace_back();
             sweep.kind = SweepKind::kBatch;
             sweep.error = mesh_.splits[first].error;
             ++sweep_;
-            for (end = first; end < most && take(end, sweep); ++end) {
+            for (end = first; end < count && take(end, sweep); ++end) {
             }
             std::sort(sweep.steps.begin(), sweep.steps.end(), [](const Sweep::Step& a, const Sweep::Step& b) {
                 return a.primary != b.primary ? a.primary < b.primary : a.split < b.split;
@@ -232,7 +234,7 @@ class Batches {
 }  // namespace
 
 std::vector<Sweep> schedule(const ProgressiveMesh& mesh, const std::vector<bool>& traded) {
-    if (!mesh.batch_ends.empty()) return Batches(mesh, traded).sweeps();
+    if (auto batches = Batches(mesh, traded).sweeps(); !batches.empty()) return batches;
     const auto count = static_cast<std::uint32_t>(mesh.splits.size());
     Dependencies depends(mesh);
     std::vector<std::uint32_t> number(mesh.positions.size(), kNoVertex);  // as written

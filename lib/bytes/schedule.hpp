@@ -34,8 +34,10 @@ struct Sweep {
 
 /// Every split once. Two splits keep their order if one acts on a vertex (splits or moves it) in the star of
 /// a vertex that the other acts on; all others may change places, which leaves the mesh around each as it
-/// was. What the mesh says to be a batch becomes one sweep, as far as it is one. `traded` tells of each vertex of the record whether it keeps its parent's number when it is born, and
-/// the parent gets the new one. `mesh` must be sound.
+/// was. A record in which
+/// long rows of splits change different triangles is written in batches, else in rounds. `traded` tells of
+/// each vertex of the record whether it keeps its parent's number when it is born, and the parent gets the
+/// new one. `mesh` must be sound.
 std::vector<Sweep> schedule(const ProgressiveMesh& mesh, const std::vector<bool>& traded);
 
 }  // namespace vsplit

@@ -56,7 +56,7 @@ const char* SplitCodec::code_head(Coder& coder, SweepHead& head) {
     cursor_ = 0;
     older_ = alive;
     if (!is_batch()) asks_.begin(alive);
-    sparse_ = !is_batch() && std::uint64_t{head.marked} * 64 < alive;
+    sparse_ = std::uint64_t{head.marked} * 64 < alive;
     return nullptr;
 }
 
@@ -84,14 +84,11 @@ bool SplitCodec::ask_batch(Coder& coder, std::uint32_t v, bool splits) {
     std::uint64_t squared = 1;
     for (const std::int32_t b : bump) squared += static_cast<std::uint64_t>(std::int64_t{b} * b);
     const std::int32_t size = log2_fixed(squared);
-    const std::size_t valence = std::clamp<std::uint32_t>(vertex.star, 3, 10) - 3;
-    const std::size_t free = unlocked(vertex);
-    const std::size_t state = free == vertex.star ? 5 : std::min<std::size_t>(free, 4);
-    const std::size_t touched = std::min(sweep_ - vertex.touched, 3u),
-                      acted = std::min(sweep_ - vertex.acted, 3u);
+    const std::size_t valence = std::clamp<std::uint32_t>(vertex.star, 3, 12) - 3;
+    const std::size_t locked = std::min(vertex.star - unlocked(vertex), 6u);
+    const std::size_t acted = std::min(sweep_ - vertex.acted, 2u);
     const auto bumpy = static_cast<std::size_t>(std::clamp((size - split_size_ + 6 * 256) >> 8, 0, 9));
-    const bool answer =
-        coder.bit(batch_mark_[(((valence * 6 + state) * 4 + touched) * 4 + acted) * 10 + bumpy], splits);
+    const bool answer = coder.bit(batch_mark_[((valence * 7 + locked) * 3 + acted) * 10 + bumpy], splits);
     if (answer) split_size_ += (size - split_size_) >> 5;
     return answer;
 }
@@ -171,6 +168,8 @@ const char* SplitCodec::code_birth(Coder& coder, std::uint32_t primary, std::siz
     out.births.emplace_back();
     if (const char* fault = code_parent(coder, primary, wanted, index, out)) return fault;
     const std::uint32_t parent = out.births[index].parent;
+    if (Coder::kDecodes && is_batch() && parent != kNoVertex && parent >= older_)
+        return "a batch splits a vertex that it bore";
     is_run_ = false;
     bool moves = false;
     std::size_t move = 0;
@@ -347,6 +346,8 @@ const char* SplitCodec::code_taken(Coder& coder, const SplitPlan& wanted, std::s
         if (star_.size > 64 ? coder.raw(1, is_taken) != 0 : coder.bit(in_mask_, is_taken)) {
             if (Coder::kDecodes && out.taken.size() >= room.corners)
                 return "a block changes more corners than it announces";
+            if (Coder::kDecodes && is_batch() && is_locked(live.triangles[corner / 3]))
+                return "a batch changes a triangle twice";
             out.taken.push_back(corner);
         }
     }

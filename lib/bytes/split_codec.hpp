@@ -152,6 +152,8 @@ class SplitCodec {
     std::uint32_t unlocked(const LiveVertex& v) const {
         return v.star - (v.touched == sweep_ ? v.locked : 0);
     }
+    /// A triangle that the batch has changed has a corner that it bore.
+    bool is_locked(const Triangle& t) const { return t[0] >= older_ || t[1] >= older_ || t[2] >= older_; }
     /// A vertex whose star changes: it is to be asked again, or has no triangle locked yet.
     LiveVertex& touch(std::uint32_t v) {
         LiveVertex& vertex = live.vertices[v];
@@ -167,7 +169,7 @@ class SplitCodec {
     /// The split at hand, if it is a run of its parent's fan and nothing else.
     void apply_run(const SplitPlan& plan);
     /// Of a batch: what a split has changed.
-    void count_locked(const SplitPlan& plan, std::uint32_t first);
+    void count_locked(std::uint32_t first);
     void predict_values(std::uint32_t parent, const SplitPlan& out);
     std::uint32_t birth_id(std::size_t index) const {
         return live.vertex_count() + static_cast<std::uint32_t>(index);
@@ -187,7 +189,7 @@ class SplitCodec {
     std::uint32_t error_bits_;
     std::int32_t split_size_ = 0;
     std::array<BitModel, 8 * 18 * 10> mark_;
-    std::array<BitModel, 8 * 6 * 4 * 4 * 10> batch_mark_;
+    std::array<BitModel, 10 * 7 * 3 * 10> batch_mark_;
     NumberModel marked_, unmarked_, error_, gap_;
 
     // Splits.

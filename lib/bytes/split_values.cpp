@@ -446,12 +446,10 @@ void SplitCodec::apply_run(const SplitPlan& plan) {
     if (shape_.group_bits > 0) groups.insert(groups.end(), plan.groups.begin(), plan.groups.end());
 }
 
-void SplitCodec::count_locked(const SplitPlan& plan, std::uint32_t first) {
+void SplitCodec::count_locked(std::uint32_t first) {
     touched_.clear();
     for (std::uint32_t v = first; v < live.vertex_count(); ++v)
         for (const std::uint32_t corner : live.corners(v)) touched_.push_back(corner / 3);
-    for (std::size_t i = 0; i < plan.triangles.size(); ++i)
-        touched_.push_back(static_cast<std::uint32_t>(live.triangles.size() - 1 - i));
     std::sort(touched_.begin(), touched_.end());
     touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
     for (const std::uint32_t t : touched_)
@@ -528,7 +526,7 @@ void SplitCodec::apply(const SplitPlan& plan) {
         if (shape_.group_bits > 0) groups.push_back(plan.groups[i]);
         for (const std::uint32_t v : plan.triangles[i]) touch(v);
     }
-    if (is_batch()) count_locked(plan, first);
+    if (is_batch()) count_locked(first);
     live.link_twins(first);
 }
 

@@ -68,9 +68,6 @@ struct ProgressiveMesh {
     std::vector<std::vector<float>> moved_values;
     std::vector<std::uint32_t> groups;  ///< Empty (all 0), or one per triangle: never changes.
     std::array<double, 3> origin{};     ///< As Mesh::origin, of all levels.
-    /// Splits may come in batches, in each of which they act on different triangles: the number of splits at
-    /// the end of each, growing, the last that of all. Empty: none are known. A file is smaller for them.
-    std::vector<std::uint32_t> batch_ends;
 
     std::size_t levels() const { return splits.size() + 1; }
 };

@@ -45,10 +45,6 @@ struct CollapseOptions {
     Cost cost = Cost::kQuadric;
     Placement placement = Placement::kOptimal;
 
-    /// Collapses in batches: no two of a batch act on one triangle, so that their order is free and a file
-    /// needs not tell it. `ProgressiveMesh::batch_ends` says where batches end.
-    bool batches = false;
-
     bool lock_boundary = false;  ///< Vertices on boundary and non-manifold edges never move nor go.
     bool lock_seams = false;     ///< Nor those where attributes or groups differ across an edge.
     double lock_features_degrees =
