@@ -18,13 +18,6 @@
 
 namespace vsplit {
 
-/// A run of sectors begin .. begin + length of the fan, and the new triangles at its ends.
-struct Cut {
-    std::uint32_t begin = 0, length = 0;
-    bool first_wing = true;  ///< There is a new triangle (child, parent, ring[begin]).
-    bool last_wing = true;   ///< There is a new triangle (child, ring[begin + length], parent).
-};
-
 /// log2_fixed() of the counts that models keep, all below 4096.
 inline constexpr std::array<std::int16_t, 4096> kCountLogs = [] {
     std::array<std::int16_t, 4096> table{};

@@ -12,27 +12,25 @@ namespace vsplit {
 void LiveStars::reserve(std::size_t vertex_count, std::size_t triangle_count) {
     vertices.reserve(vertex_count);
     triangles.reserve(triangle_count);
-    slots_.reserve(8 * vertex_count);
+    lines_.reserve(vertex_count);
 }
 
-void LiveStars::make_room(LiveVertex& vertex, std::uint32_t corners) {
-    constexpr std::uint32_t kLeastRoom = 8;
-    if (corners <= vertex.room) return;
-    const std::uint32_t room = std::max(kLeastRoom, std::bit_ceil(corners));
-    auto& list = free_[static_cast<std::size_t>(std::countr_zero(room))];
-    std::uint32_t slots = static_cast<std::uint32_t>(slots_.size());
+LiveStars::Slot* LiveStars::grow(std::uint32_t vertex, std::uint32_t slots) {
+    LiveVertex& v = vertices[vertex];
+    const auto power = static_cast<std::uint8_t>(std::countr_zero(std::bit_ceil(slots) / kLine));
+    auto& list = free_[power];
+    auto more = static_cast<std::uint32_t>(more_.size());
     if (!list.empty()) {
-        slots = list.back();
+        more = list.back();
         list.pop_back();
     } else {
-        slots_.resize(slots_.size() + room);
+        more_.resize(more_.size() + (std::size_t{1} << power));
     }
-    if (vertex.room > 0) {
-        std::copy_n(slots_.begin() + vertex.slots, vertex.star, slots_.begin() + slots);
-        free_[static_cast<std::size_t>(std::countr_zero(vertex.room))].push_back(vertex.slots);
-    }
-    vertex.slots = slots;
-    vertex.room = room;
+    std::copy_n(this->list(vertex), v.slots(), more_[more].slot.data());
+    if (v.power > 0) free_[v.power].push_back(v.more);
+    v.more = more;
+    v.power = power;
+    return more_[more].slot.data();
 }
 
 void LiveStars::add_vertex(const Lattice3& at) {
@@ -40,15 +38,21 @@ void LiveStars::add_vertex(const Lattice3& at) {
     vertex.at = at;
     vertex.twin = vertex_count();
     vertices.push_back(vertex);
+    lines_.emplace_back();
+}
+
+void LiveStars::forget(std::uint32_t vertex) {
+    vertices[vertex].shape = LiveVertex::Shape::kUnknown;
 }
 
 void LiveStars::add_triangle(const Triangle& corners) {
     const auto first = static_cast<std::uint32_t>(3 * triangles.size());
     triangles.push_back(corners);
     for (std::uint32_t k = 0; k < 3; ++k) {
+        forget(corners[k]);
         LiveVertex& vertex = vertices[corners[k]];
-        make_room(vertex, vertex.star + 1);
-        slots_[vertex.slots + vertex.star++] = first + k;
+        make_room(corners[k], vertex.star + 1)[vertex.star].corner = first + k;
+        ++vertex.star;
     }
     weigh(first / 3, 1);
 }
@@ -56,9 +60,10 @@ void LiveStars::add_triangle(const Triangle& corners) {
 void LiveStars::relink(std::uint32_t vertex, std::span<const std::uint32_t> corners) {
     LiveVertex& v = vertices[vertex];
     const auto count = static_cast<std::uint32_t>(corners.size());
-    v.star = std::min(v.star, count);
-    make_room(v, count);
-    std::copy_n(corners.begin(), count, slots_.begin() + v.slots);
+    v.star = 0;
+    forget(vertex);
+    Slot* slot = make_room(vertex, count);
+    for (const std::uint32_t corner : corners) (slot++)->corner = corner;
     v.star = count;
 }
 
@@ -73,82 +78,220 @@ void LiveStars::weigh(std::uint32_t triangle, int sign) {
 }
 
 void LiveStars::gather_corners(std::uint32_t vertex, std::vector<std::uint32_t>& out) const {
-    const auto list = corners(vertex);
-    out.assign(list.begin(), list.end());
+    const Slot* slot = list(vertex);
+    out.resize(vertices[vertex].star);
+    for (std::uint32_t& corner : out) corner = (slot++)->corner;
 }
 
-void LiveStars::gather(std::uint32_t vertex, Star& star) const {
+void LiveStars::gather(std::uint32_t vertex, Star& star) {
+    if (vertices[vertex].shape == LiveVertex::Shape::kUnknown) order(vertex);
+    const LiveVertex& v = vertices[vertex];
     star.centre = vertex;
-    star.fan = false;
-    gather_corners(vertex, star.corners);
-    star.size = static_cast<std::uint32_t>(star.corners.size());
-    const auto irregular = [&] { std::sort(star.corners.begin(), star.corners.end()); };
-    if (star.size == 0 || star.size > Star::kLargestFan) return irregular();
-    const std::uint32_t n = star.size;
+    star.fan = v.is_fan();
+    star.closed = v.shape == LiveVertex::Shape::kClosed;
+    star.size = v.star;
+    if (!star.fan) {
+        gather_corners(vertex, star.corners);
+        std::sort(star.corners.begin(), star.corners.end());
+        return;
+    }
+    const std::uint32_t count = v.slots();
+    const Slot* const slot = list(vertex);
+    // A closed ring begins at its least vertex.
+    std::uint32_t first = 0;
+    if (star.closed) {
+        std::uint32_t least = slot[0].vertex;
+        for (std::uint32_t i = 1; i < count; ++i) {
+            first = slot[i].vertex < least ? i : first;
+            least = std::min(least, slot[i].vertex);
+        }
+    }
+    std::uint32_t to = 0;
+    for (std::uint32_t i = first; i < count; ++i, ++to)
+        star.ring[to] = slot[i].vertex, star.corner[to] = slot[i].corner;
+    for (std::uint32_t i = 0; i < first; ++i, ++to)
+        star.ring[to] = slot[i].vertex, star.corner[to] = slot[i].corner;
+}
+
+void LiveStars::order(std::uint32_t vertex) {
+    LiveVertex& v = vertices[vertex];
+    const std::uint32_t n = v.star;
+    v.shape = LiveVertex::Shape::kOther;
+    if (n == 0 || n > Star::kLargestFan) return;
+    Slot* const slot = list(vertex);
     std::array<std::uint32_t, Star::kLargestFan> from, to;
     for (std::uint32_t i = 0; i < n; ++i) {
-        const std::uint32_t corner = star.corners[i], t = corner / 3, k = corner - 3 * t;
+        const std::uint32_t t = slot[i].corner / 3, k = slot[i].corner - 3 * t;
         const Triangle& c = triangles[t];
         from[i] = c[k == 2 ? 0 : k + 1];
         to[i] = c[k == 0 ? 2 : k - 1];
-        __builtin_prefetch(&vertices[from[i]]);
     }
-    // Forward from any triangle to the end, or round. Lists are mostly in the fan's order, so look next door
-    // first.
-    std::array<std::uint32_t, Star::kLargestFan> order;
+    // Forward from any triangle to the end, or round.
     const auto successor = [&](std::uint32_t i) {
-        const std::uint32_t end = to[i], next = i + 1 == n ? 0 : i + 1;
-        if (from[next] == end) return next;
         std::uint32_t j = 0;
-        while (j < n && from[j] != end) ++j;
+        while (j < n && from[j] != to[i]) ++j;
         return j;
     };
     std::uint32_t start = 0, count = 1;
+    bool closed = false;
     for (std::uint32_t at = 0; count <= n; ++count) {
         at = successor(at);
         if (at == 0 || at == n) {
-            star.closed = at == 0;
+            closed = at == 0;
             break;
         }
     }
-    if (count > n || (star.closed && count != n)) return irregular();
-    if (star.closed) {
-        for (std::uint32_t i = 1; i < n; ++i)
-            if (from[i] < from[start]) start = i;
-    } else {
-        // And back to where it begins.
-        for (std::uint32_t steps = 0; steps < n; ++steps) {
-            std::uint32_t j = 0;
-            while (j < n && to[j] != from[start]) ++j;
-            if (j == n) break;
-            start = j;
-        }
+    if (count > n || (closed && count != n)) return;
+    // And back to where it begins.
+    for (std::uint32_t steps = 0; !closed && steps < n; ++steps) {
+        std::uint32_t j = 0;
+        while (j < n && to[j] != from[start]) ++j;
+        if (j == n) break;
+        start = j;
     }
+    std::array<Slot, Star::kLargestFan + 1> row;
     std::uint32_t at = start;
     for (std::uint32_t i = 0; i < n; ++i) {
-        order[i] = at;
-        star.ring[i] = from[at];
-        star.sector[i] = star.corners[at] / 3;
+        row[i] = {from[at], slot[at].corner};
         if (i + 1 == n) break;
         at = successor(at);
-        if (at == n || at == start) return irregular();
+        if (at == n || at == start) return;
     }
-    star.ring[n] = to[at];
+    row[n] = {to[at], kNoVertex};
     // Every triangle once, and every vertex of the ring once.
-    std::uint64_t seen = 0, filter = 0;
-    std::uint32_t meets = 0;
-    const std::uint32_t edge = star.ring[n];
     for (std::uint32_t i = 0; i < n; ++i) {
-        seen |= std::uint64_t{1} << order[i];
-        filter |= std::uint64_t{1} << (from[i] % 64);
-        meets += from[i] == edge;
+        if (!closed && row[i].vertex == row[n].vertex) return;
+        for (std::uint32_t j = 0; j < i; ++j)
+            if (row[i].vertex == row[j].vertex) return;
     }
-    if (std::popcount(seen) != static_cast<int>(n) || meets != (star.closed ? 1u : 0u)) return irregular();
-    if (std::popcount(filter) != static_cast<int>(n))
-        for (std::uint32_t i = 0; i < n; ++i)
-            for (std::uint32_t j = 0; j < i; ++j)
-                if (from[i] == from[j]) return irregular();
-    star.fan = true;
+    store_fan(vertex, row.data(), closed ? n : n + 1, closed);
+}
+
+void LiveStars::store_fan(std::uint32_t vertex, const Slot* slots, std::uint32_t count, bool closed) {
+    LiveVertex& v = vertices[vertex];
+    std::copy_n(slots, count, make_room(vertex, count));
+    v.star = closed ? count : count - 1;
+    v.shape = v.star > Star::kLargestFan ? LiveVertex::Shape::kOther
+              : closed                   ? LiveVertex::Shape::kClosed
+                                         : LiveVertex::Shape::kOpen;
+}
+
+void LiveStars::replace(std::uint32_t vertex, std::uint32_t parent, std::uint32_t child) {
+    if (!vertices[vertex].is_fan()) return;
+    Slot* slot = list(vertex);
+    while (slot->vertex != parent) ++slot;
+    slot->vertex = child;
+}
+
+void LiveStars::insert(std::uint32_t vertex, std::uint32_t parent, std::uint32_t child, std::uint32_t corner,
+                       bool after) {
+    LiveVertex& v = vertices[vertex];
+    const std::uint32_t count = v.slots();
+    Slot* const slot = make_room(vertex, count + 1);
+    if (!v.is_fan()) {
+        v.shape = LiveVertex::Shape::kUnknown;
+        slot[v.star++].corner = corner;
+        return;
+    }
+    std::uint32_t at = 0;
+    while (slot[at].vertex != parent) ++at;
+    if (after) {
+        std::copy_backward(slot + at + 1, slot + count, slot + count + 1);
+        slot[at + 1] = {child, slot[at].corner};
+        slot[at].corner = corner;
+    } else {
+        std::copy_backward(slot + at, slot + count, slot + count + 1);
+        slot[at] = {child, corner};
+    }
+    if (++v.star > Star::kLargestFan) v.shape = LiveVertex::Shape::kOther;
+}
+
+void LiveStars::split(const Star& star, const Cut& cut, const Lattice3& parent_at, const Lattice3& child_at) {
+    const std::uint32_t p = star.centre, child = vertex_count(), n = star.size, ring = star.ring_size(),
+                        begin = cut.begin, length = cut.length, end = begin + length;
+    const auto wrapped = [&](std::uint32_t i) { return star.closed && i >= n ? i - n : i; };
+    const std::uint32_t first_at = star.ring[begin], last_at = star.ring[wrapped(end)];
+    // New triangles: (child, last, parent), then (child, parent, first).
+    const auto last_corner = static_cast<std::uint32_t>(3 * triangles.size()),
+               first_corner = last_corner + (cut.last_wing ? 3 : 0);
+    const Lattice3 was = vertices[p].at;
+    add_vertex(child_at);
+    vertices[p].at = parent_at;
+    if (cut.last_wing) triangles.push_back({child, last_at, p});
+    if (cut.first_wing) triangles.push_back({child, p, first_at});
+    std::uint32_t* const corners = triangles.data()->data();
+
+    // The rows around both.
+    std::array<Slot, Star::kLargestFan + 3> row;
+    std::uint32_t count = 0;
+    const bool closed = cut.first_wing && cut.last_wing;
+    if (cut.first_wing && !closed) row[count++] = {p, first_corner};
+    for (std::uint32_t i = begin; i < end; ++i) {
+        const std::uint32_t k = wrapped(i);
+        corners[star.corner[k]] = child;
+        row[count++] = {star.ring[k], star.corner[k]};
+    }
+    row[count++] = {last_at, cut.last_wing ? last_corner : kNoVertex};
+    if (cut.last_wing) row[count++] = {p, cut.first_wing ? first_corner : kNoVertex};
+    store_fan(child, row.data(), count, closed);
+    const auto sum_around = [&](std::uint32_t vertex, bool is_closed) {
+        std::array<std::uint32_t, 3> sum{};
+        for (std::uint32_t i = 0; i < count; ++i) {
+            const Lattice3& at = vertices[row[i].vertex].at;
+            const std::uint32_t times = !is_closed && (i == 0 || i + 1 == count) ? 1 : 2;
+            for (std::size_t k = 0; k < 3; ++k) sum[k] += times * static_cast<std::uint32_t>(at[k]);
+        }
+        vertices[vertex].ring = sum;
+    };
+    sum_around(child, closed);
+    count = 0;
+    if (star.closed) {
+        row[count++] = {child, last_corner + 2};
+        for (std::uint32_t i = end; i < begin + n; ++i)
+            row[count++] = {star.ring[wrapped(i)], star.corner[wrapped(i)]};
+        row[count++] = {first_at, first_corner + 1};
+    } else {
+        if (cut.first_wing) {
+            for (std::uint32_t i = 0; i < begin; ++i) row[count++] = {star.ring[i], star.corner[i]};
+            row[count++] = {first_at, first_corner + 1};
+        }
+        row[count++] = {child, cut.last_wing ? last_corner + 2 : kNoVertex};
+        if (cut.last_wing) {
+            for (std::uint32_t i = end; i < n; ++i) row[count++] = {star.ring[i], star.corner[i]};
+            row[count++] = {star.ring[n], kNoVertex};
+        }
+    }
+    store_fan(p, row.data(), count, star.closed);
+    sum_around(p, star.closed);
+
+    // And what their neighbours see: by how much the centre of each sector moves, and the new triangles.
+    std::array<std::uint32_t, 3> stays, goes, both;
+    for (std::size_t k = 0; k < 3; ++k) {
+        stays[k] = static_cast<std::uint32_t>(parent_at[k] - was[k]);
+        goes[k] = static_cast<std::uint32_t>(child_at[k] - was[k]);
+        both[k] = static_cast<std::uint32_t>(parent_at[k] + child_at[k]);
+    }
+    const auto taken = [&](std::uint32_t i) { return (i >= begin ? i : i + n) - begin < length; };
+    bool before = star.closed && taken(n - 1);
+    for (std::uint32_t i = 0; i < ring; ++i) {
+        const bool has_left = star.closed || i > 0, has_right = star.closed || i < n,
+                   right = has_right && taken(i);
+        const std::uint32_t goes_times = std::uint32_t{before} + std::uint32_t{right},
+                            stays_times = std::uint32_t{has_left} + std::uint32_t{has_right} - goes_times;
+        LiveVertex& here = vertices[star.ring[i]];
+        for (std::size_t k = 0; k < 3; ++k) here.ring[k] += goes_times * goes[k] + stays_times * stays[k];
+        before = right;
+    }
+    for (std::uint32_t i = begin; i <= end; ++i) {
+        const std::uint32_t w = star.ring[wrapped(i)];
+        const bool first = i == begin && cut.first_wing, last = i == end && cut.last_wing;
+        if (!first && !last) {
+            replace(w, p, child);
+            continue;
+        }
+        insert(w, p, child, first ? first_corner + 2 : last_corner + 1, last);
+        for (std::size_t k = 0; k < 3; ++k) vertices[w].ring[k] += both[k];
+    }
 }
 
 void LiveStars::link_twins(std::uint32_t first) {

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: MIT
 //
 // The mesh at the level reached, as coding and decoding see it: places on the lattice, and which triangles
-// are around each vertex. Nothing in it depends on the mesh being manifold.
+// are around each vertex. Nothing in it depends on the mesh being manifold; but where the triangles around a
+// vertex are a fan, they are kept in its order, and a split of a fan hands the order on.
 #pragma once
 
 #include <array>
@@ -20,6 +21,9 @@ using Lattice3 = std::array<std::int32_t, 3>;
 inline constexpr std::int32_t kLatticeReach = 1 << 22;
 
 struct LiveVertex {
+    /// What is known of the star: nothing, that it is no fan, that it is one.
+    enum class Shape : std::uint8_t { kUnknown, kOther, kOpen, kClosed };
+
     Lattice3 at{};
     std::array<std::uint32_t, 3>
         ring{};  ///< Sum, over the star's triangles, of the two other corners' places; modulo 2^32.
@@ -28,8 +32,12 @@ struct LiveVertex {
     std::uint32_t locked = 0;   ///< Of a batch: triangles of the star that it has changed, if touched in it.
     std::uint32_t acted = 0;    ///< The last in which it was born, split or moved.
     std::uint32_t twin = 0;     ///< The next in the ring of vertices born at the same place.
-    std::uint32_t slots = 0;    ///< Where the list of its corners begins.
-    std::uint32_t room = 0;     ///< How many the list has room for: 0 or a power of two.
+    std::uint32_t more = 0;     ///< Where its list goes on if it is long.
+    std::uint8_t power = 0;     ///< The list has room for 8 << power slots.
+    Shape shape = Shape::kUnknown;
+
+    bool is_fan() const { return shape >= Shape::kOpen; }
+    std::uint32_t slots() const { return star + (shape == Shape::kOpen); }
 };
 
 /// The star of a vertex, and its ring in order if the triangles are a single fan.
@@ -37,15 +45,22 @@ struct Star {
     static constexpr std::size_t kLargestFan = 32;
 
     std::uint32_t centre = kNoVertex;
-    std::vector<std::uint32_t> corners;  ///< Those that hold the centre, ascending if it is no fan.
-    bool fan = false;                    ///< At most kLargestFan triangles, in one closed or open fan.
+    bool fan = false;  ///< At most kLargestFan triangles, in one closed or open fan.
     bool closed = false;
-    std::uint32_t size = 0;  ///< Triangles.
+    std::uint32_t size = 0;              ///< Triangles.
+    std::vector<std::uint32_t> corners;  ///< Those that hold the centre, ascending; if it is no fan.
     std::array<std::uint32_t, kLargestFan + 1>
-        ring{};  ///< Sector i lies between ring i and i + 1 (closed: modulo size).
-    std::array<std::uint32_t, kLargestFan> sector{};  ///< Triangles.
+        ring;  ///< Sector i lies between ring i and i + 1 (closed: modulo size).
+    std::array<std::uint32_t, kLargestFan + 1> corner;  ///< The centre's in each sector.
     std::uint32_t ring_size() const { return closed ? size : size + 1; }
     std::uint32_t ring_at(std::uint32_t i) const { return ring[closed && i >= size ? i - size : i]; }
+};
+
+/// A run of sectors begin .. begin + length of a fan, and the new triangles at its ends.
+struct Cut {
+    std::uint32_t begin = 0, length = 0;
+    bool first_wing = true;  ///< There is a new triangle (child, parent, ring[begin]).
+    bool last_wing = true;   ///< There is a new triangle (child, ring[begin + length], parent), before it.
 };
 
 class LiveStars {
@@ -60,19 +75,21 @@ class LiveStars {
     void add_vertex(const Lattice3& at);
     /// Corners below vertex_count(), three different ones.
     void add_triangle(const Triangle& corners);
-    /// The corners that hold a vertex, in no order; gone with the next change of any star.
-    std::span<const std::uint32_t> corners(std::uint32_t vertex) const {
-        return std::span(slots_).subspan(vertices[vertex].slots, vertices[vertex].star);
-    }
     /// A corner goes over from the vertex that holds it to another. The lists of both are left to relink().
     void hand_over(std::uint32_t corner, std::uint32_t vertex) { triangles[corner / 3][corner % 3] = vertex; }
-    /// Makes these corners, which are in no list of this class, the list of the vertex that all of them hold.
+    /// The corners that hold the vertex, in any order: its list.
     void relink(std::uint32_t vertex, std::span<const std::uint32_t> corners);
+    /// Forgets the order of a star, one of whose triangles has got another corner.
+    void forget(std::uint32_t vertex);
+
+    /// Splits a fan, as gathered: moves its centre, adds the child and the new triangles.
+    void split(const Star& star, const Cut& cut, const Lattice3& parent_at, const Lattice3& child_at);
 
     /// Adds (sign 1) or takes away (-1) a triangle's places from the ring sums of its corners.
     void weigh(std::uint32_t triangle, int sign);
 
-    void gather(std::uint32_t vertex, Star& star) const;
+    void gather(std::uint32_t vertex, Star& star);
+    /// The corners that hold a vertex, in no order.
     void gather_corners(std::uint32_t vertex, std::vector<std::uint32_t>& corners) const;
 
     /// Vertices of one place become twins of each other: among `first` and those after it.
@@ -81,28 +98,50 @@ class LiveStars {
     /// How far a vertex is from the mean of its neighbours, in 1/16; zeros where the star is empty or vast.
     Lattice3 bump(std::uint32_t vertex) const;
 
-    /// Has the memory read ahead that a split of this vertex needs: 0 its list, 1 its triangles, 2 its ring.
+    /// Has the memory read ahead that a split of this vertex needs: 0 its list, 1 its ring, 2 nothing more.
     void fetch(std::uint32_t vertex, int stage) const {
+        if (stage == 0) return __builtin_prefetch(&lines_[vertex]);
+        if (stage != 1) return;
         const LiveVertex& v = vertices[vertex];
-        if (v.star == 0 || v.star > 12) return;
-        const std::uint32_t* slot = slots_.data() + v.slots;
-        if (stage == 0) return __builtin_prefetch(slot);
-        if (stage == 1) {
-            for (std::uint32_t i = 0; i < v.star; ++i) __builtin_prefetch(&triangles[slot[i] / 3]);
-            return;
-        }
-        for (std::uint32_t i = 0; i < v.star; ++i) {
-            const std::uint32_t t = slot[i] / 3, k = slot[i] - 3 * t;
-            __builtin_prefetch(&vertices[triangles[t][k == 2 ? 0 : k + 1]]);
+        if (v.power != 0 || !v.is_fan()) return;
+        for (const Slot& slot : std::span(lines_[vertex].slot).first(v.slots())) {
+            __builtin_prefetch(&vertices[slot.vertex], 1);
+            __builtin_prefetch(&lines_[slot.vertex], 1);
         }
     }
 
   private:
-    /// Room for so many corners; what is in the list stays.
-    void make_room(LiveVertex& vertex, std::uint32_t corners);
+    /// A corner that holds the vertex, and, in a fan, the ring's vertex where its sector begins. An open fan
+    /// has a last slot of the ring's last vertex and no corner.
+    struct Slot {
+        std::uint32_t vertex, corner;
+    };
+    static constexpr std::uint32_t kLine = 8;
+    struct alignas(64) Line {
+        std::array<Slot, kLine> slot;
+    };
 
-    std::vector<std::uint32_t> slots_;                 // lists of corners, each as long as a power of two
-    std::array<std::vector<std::uint32_t>, 33> free_;  // lists given back, by the power
+    Slot* list(std::uint32_t vertex) {
+        const LiveVertex& v = vertices[vertex];
+        return (v.power == 0 ? lines_[vertex] : more_[v.more]).slot.data();
+    }
+    const Slot* list(std::uint32_t vertex) const { return const_cast<LiveStars*>(this)->list(vertex); }
+    /// Room for so many slots; what is in the list stays.
+    Slot* make_room(std::uint32_t vertex, std::uint32_t slots) {
+        return slots <= kLine << vertices[vertex].power ? list(vertex) : grow(vertex, slots);
+    }
+    Slot* grow(std::uint32_t vertex, std::uint32_t slots);
+    /// Finds out whether the star of a vertex is a fan, and puts its list in order if so.
+    void order(std::uint32_t vertex);
+    void store_fan(std::uint32_t vertex, const Slot* slots, std::uint32_t count, bool closed);
+    /// In the list of a neighbour of a split vertex.
+    void replace(std::uint32_t vertex, std::uint32_t parent, std::uint32_t child);
+    void insert(std::uint32_t vertex, std::uint32_t parent, std::uint32_t child, std::uint32_t corner,
+                bool after);
+
+    std::vector<Line> lines_;                          // the first of each vertex
+    std::vector<Line> more_;                           // longer lists, whole
+    std::array<std::vector<std::uint32_t>, 33> free_;  // of them, lists given back, by their power
     std::vector<std::uint32_t> order_;
 };
 

@@ -26,8 +26,8 @@ std::uint64_t memory_needed(const FileInfo& info, const Details& details) {
     const std::uint64_t vertex = sizeof(Float3) + sizeof(std::uint32_t) + 4 * floats;
     const std::uint64_t live_vertex = sizeof(LiveVertex) + 4 * numbers + exact;
     const std::uint64_t groups = info.largest_group > 0 ? 8 : 0;
-    // Lists of corners have room for eight, and double as stars grow.
-    const std::uint64_t lists = 4 * (8 * std::uint64_t{info.vertices} + 12 * std::uint64_t{info.triangles} +
+    // Lists of slots have room for eight, and double as stars grow.
+    const std::uint64_t lists = 8 * (8 * std::uint64_t{info.vertices} + 12 * std::uint64_t{info.triangles} +
                                      4 * std::uint64_t{info.corner_changes});
     return info.vertices * (vertex + live_vertex) + info.triangles * (3 * sizeof(Triangle) + groups) + lists +
            std::uint64_t{info.splits} * sizeof(Split) +

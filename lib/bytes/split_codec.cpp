@@ -243,7 +243,7 @@ bool SplitCodec::find_cut(std::span<const std::uint32_t> taken, const SplitPlan&
     std::uint32_t in = 0;
     for (std::uint32_t i = 0; i < n; ++i)
         for (const std::uint32_t corner : taken)
-            if (corner / 3 == star_.sector[i]) in |= 1u << i;
+            if (corner == star_.corner[i]) in |= 1u << i;
     const auto has = [&](std::uint32_t i) { return (in >> i & 1) != 0; };
     const auto born = [&](const Triangle& triangle) {
         return std::any_of(wanted.triangles.begin(), wanted.triangles.end(),
@@ -280,14 +280,10 @@ bool SplitCodec::find_cut(std::span<const std::uint32_t> taken, const SplitPlan&
 void SplitCodec::take_run(std::uint32_t child, SplitPlan& out) {
     const std::uint32_t n = star_.size, p = star_.centre, begin = run_.begin, end = begin + run_.length;
     const std::size_t before = out.taken.size();
-    for (std::uint32_t i = begin; i < end; ++i) {
-        const std::uint32_t t = star_.sector[i >= n ? i - n : i];
-        const Triangle& c = live.triangles[t];
-        out.taken.push_back(3 * t + (c[0] == p ? 0u : c[1] == p ? 1u : 2u));
-    }
+    for (std::uint32_t i = begin; i < end; ++i) out.taken.push_back(star_.corner[i >= n ? i - n : i]);
     std::sort(out.taken.begin() + static_cast<std::ptrdiff_t>(before), out.taken.end());
     const auto group_of = [&](std::uint32_t i) {
-        return groups.empty() ? 0 : groups[star_.sector[star_.closed && i >= n ? i - n : i]];
+        return groups.empty() ? 0 : groups[star_.corner[star_.closed && i >= n ? i - n : i] / 3];
     };
     if (run_.last_wing) {
         implied_triangles_.push_back({child, star_.ring_at(end >= n && star_.closed ? end - n : end), p});
@@ -338,6 +334,7 @@ const char* SplitCodec::code_taken(Coder& coder, const SplitPlan& wanted, std::s
                        ? "a block changes more corners than it announces"
                        : nullptr;
         }
+        live.gather_corners(star_.centre, star_.corners);
         std::sort(star_.corners.begin(), star_.corners.end());
     }
     // Any corners of the star. Vast stars pay a whole bit each, so that work stays in proportion to bytes.

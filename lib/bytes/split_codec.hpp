@@ -211,7 +211,7 @@ class SplitCodec {
     Ring child_ring_, parent_ring_;
     PlaceGuides guides_;
     std::vector<Triangle> implied_triangles_;
-    std::vector<std::uint32_t> implied_groups_, near_, scratch_, touched_, kept_, run_corners_;
+    std::vector<std::uint32_t> implied_groups_, near_, scratch_, touched_;
     std::vector<std::int32_t> predicted_;
     std::vector<std::uint32_t> scales_;
     std::vector<bool> used_;

@@ -381,69 +381,30 @@ void SplitCodec::code_base(Coder& coder) {
 void SplitCodec::apply_run(const SplitPlan& plan) {
     const std::size_t stride = shape_.stride();
     const SplitPlan::Birth& birth = plan.births[0];
-    const std::uint32_t p = birth.parent, child = live.vertex_count(), n = star_.size,
-                        ring = star_.ring_size(), begin = run_.begin, length = run_.length;
-    const Lattice3 was = live.vertices[p].at;
+    const std::uint32_t p = birth.parent, child = live.vertex_count();
+    Lattice3 parent_at = live.vertices[p].at;
     if (!plan.moves.empty()) {
-        live.vertices[p].at = plan.moves[0].at;
+        parent_at = plan.moves[0].at;
         if (shape_.lossless) finer[p] = plan.moves[0].finer;
         std::copy_n(plan.move_values.begin(), stride,
                     values.begin() + static_cast<std::ptrdiff_t>(p * stride));
     }
-    live.add_vertex(birth.at);
+    live.split(star_, run_, parent_at, birth.at);
     values.insert(values.end(), plan.birth_values.begin(), plan.birth_values.end());
     if (shape_.lossless) finer.push_back(birth.finer);
-    LiveVertex &parent = live.vertices[p], &born = live.vertices[child];
-    Lattice3 stays, goes;  // by how much the centre of a sector moves: the parent's, the child's
-    for (std::size_t k = 0; k < 3; ++k) stays[k] = parent.at[k] - was[k], goes[k] = birth.at[k] - was[k];
-    const std::uint32_t past = begin + length, end = star_.closed && past >= n ? past - n : past;
-    const auto taken = [&](std::uint32_t i) { return (i >= begin ? i : i + n) - begin < length; };
-    kept_.clear();
-    run_corners_.clear();
-    std::array<std::uint32_t, 3> born_ring{}, parent_ring{};
-    bool before = star_.closed && taken(n - 1);
-    for (std::uint32_t i = 0; i < ring; ++i) {
-        LiveVertex& here = touch(star_.ring[i]);
-        // The sectors on both sides of ring vertex i.
-        const bool is_left = star_.closed || i > 0, is_right = star_.closed || i < n;
-        const bool right = is_right && taken(i);
-        const Lattice3 none{},
-            &a = !is_left ? none
-                 : before ? goes
-                          : stays,
-            &b = !is_right ? none
-                 : right   ? goes
-                           : stays;
-        for (std::size_t k = 0; k < 3; ++k) {
-            here.ring[k] += static_cast<std::uint32_t>(a[k] + b[k]);
-            const auto at = static_cast<std::uint32_t>(here.at[k]);
-            const std::uint32_t sectors = std::uint32_t{is_left} + std::uint32_t{is_right};
-            const std::uint32_t in = std::uint32_t{is_left && before} + std::uint32_t{right};
-            born_ring[k] += in * at;
-            parent_ring[k] += (sectors - in) * at;
-        }
-        // What the batch has changed for good: the run, and the wings.
-        here.locked += std::uint32_t{is_left && before} + std::uint32_t{right} +
-                       std::uint32_t{run_.first_wing && i == begin} +
-                       std::uint32_t{run_.last_wing && i == end};
-        if (is_right) {
-            const std::uint32_t t = star_.sector[i];
-            Triangle& c = live.triangles[t];
-            const std::uint32_t k = c[0] == p ? 0 : c[1] == p ? 1 : 2;
-            if (right) c[k] = child;
-            (right ? run_corners_ : kept_).push_back(3 * t + k);
-        }
-        before = right;
-    }
-    born.ring = born_ring;
-    parent.ring = parent_ring;
-    touch(child);
-    touch(p).locked += std::uint32_t{run_.first_wing} + std::uint32_t{run_.last_wing};
-    born.acted = parent.acted = sweep_;
-    live.relink(p, kept_);
-    live.relink(child, run_corners_);
-    for (const Triangle& triangle : plan.triangles) live.add_triangle(triangle);
     if (shape_.group_bits > 0) groups.insert(groups.end(), plan.groups.begin(), plan.groups.end());
+    for (std::uint32_t i = 0; i < star_.ring_size(); ++i) touch(star_.ring[i]);
+    touch(p).acted = touch(child).acted = sweep_;
+    if (!is_batch()) return;
+    // What the batch has changed for good: the run, and the wings. Inside the run, two of them at each vertex.
+    const std::uint32_t n = star_.size, end = run_.begin + run_.length;
+    for (std::uint32_t i = run_.begin; i <= end; ++i) {
+        LiveVertex& here = live.vertices[star_.ring[star_.closed && i >= n ? i - n : i]];
+        here.locked += std::uint32_t{i > run_.begin} + std::uint32_t{i < end} +
+                       std::uint32_t{run_.first_wing && i == run_.begin} +
+                       std::uint32_t{run_.last_wing && i == end};
+    }
+    live.vertices[p].locked += std::uint32_t{run_.first_wing} + std::uint32_t{run_.last_wing};
 }
 
 void SplitCodec::count_locked(std::uint32_t first) {
@@ -504,11 +465,11 @@ void SplitCodec::apply(const SplitPlan& plan) {
         begin = birth.taken_end;
         touch(first + i).acted = sweep_;
         if (birth.parent == kNoVertex) continue;
-        if (plan.births.size() == 1 && star_.centre == birth.parent)
-            scratch_ = star_.corners;  // as it was gathered for the cut
-        else
-            live.gather_corners(birth.parent, scratch_);
+        live.gather_corners(birth.parent, scratch_);
         touch_ring(birth.parent);
+        // The neighbours see another vertex in the triangles that go over.
+        for (const std::uint32_t corner : taken)
+            for (const std::uint32_t w : live.triangles[corner / 3]) live.forget(w);
         for (const std::uint32_t corner : taken) live.hand_over(corner, first + i);
         std::erase_if(scratch_, [&](std::uint32_t corner) {
             return live.triangles[corner / 3][corner % 3] == first + i;

@@ -1,89 +1,121 @@
 // SPDX-FileCopyrightText: 2026 The vsplit authors
 // SPDX-License-Identifier: MIT
 //
-// libFuzzer target: a file that arrives in pieces of any size, shown at any level in between, forward and
-// back. The last bytes of the input say how; the rest is the file, its checksums made to fit.
+// libFuzzer target: a file that arrives in pieces of any size from anywhere, shown at any target in between,
+// forward and back. The last bytes of the input say how; the rest is the file, its checksums made to fit.
+// What the dirty ranges name is all that a renderer copies, and must be all that changed.
+#include "vsplit/stream.hpp"
+
+#include <algorithm>
 #include <cstdlib>
 
-#include "../unit/pmesh_bytes.hpp"
+#include "reseal_all.hpp"
 #include "vsplit/live_mesh.hpp"
-#include "vsplit/progressive_mesh.hpp"
 
 using namespace vsplit;
 
 namespace {
 
-/// The checksum of a block as it arrived, in the table of a decoder that is about to be made.
-void reseal_blocks(test::Bytes& bytes) {
-    const auto table = get<std::uint64_t>(bytes, test::kTableOffsetAt);
-    for (std::uint64_t i = 0; i < get<std::uint32_t>(bytes, test::kBlockCountAt); ++i) {
-        if (table > bytes.size() || kTableEntryBytes * (i + 1) > bytes.size() - table) break;
-        const std::size_t entry = table + kTableEntryBytes * i;
-        const auto at = get<std::uint64_t>(bytes, entry);
-        const std::uint64_t size = get<std::uint32_t>(bytes, entry + test::kEntryBytesAt);
-        if (at <= bytes.size() && size <= bytes.size() - at)
-            test::put_at(bytes, entry + test::kEntryChecksumAt,
-                         checksum64(std::span(bytes).subspan(at, size)));
-    }
-    const auto base = get<std::uint64_t>(bytes, test::kBaseOffsetAt);
-    const std::uint64_t base_bytes = get<std::uint32_t>(bytes, test::kBaseBytesAt);
-    if (base <= bytes.size() && base_bytes <= bytes.size() - base)
-        test::put_at(bytes, test::kBaseChecksumAt, checksum64(std::span(bytes).subspan(base, base_bytes)));
-    test::reseal(bytes);
-}
-
 void require(bool good) {
     if (!good) std::abort();
 }
 
+/// What a renderer has, made of dirty ranges alone.
+struct Renderer {
+    std::vector<Float3> positions;
+    std::vector<Triangle> triangles;
+
+    void take(LiveBuffers& live) {
+        const DirtyRanges dirty = live.take_dirty();
+        positions.resize(live.vertex_count());
+        triangles.resize(live.triangle_count());
+        for (std::uint32_t v = dirty.vertices_begin; v < dirty.vertices_end; ++v)
+            positions.at(v) = live.positions()[v];
+        for (std::uint32_t t = dirty.triangles_begin; t < dirty.triangles_end; ++t)
+            triangles.at(t) = live.triangles()[t];
+        require(
+            std::equal(triangles.begin(), triangles.end(), live.triangles().begin(), live.triangles().end()));
+        require(
+            std::equal(positions.begin(), positions.end(), live.positions().begin(), live.positions().end()));
+        for (const Triangle& triangle : triangles)
+            for (const std::uint32_t corner : triangle) require(corner < positions.size());
+    }
+};
+
+/// The numbers that the input's end holds, over and over.
+struct Script {
+    static constexpr std::size_t kBytes = 32;
+    const std::uint8_t* bytes;
+    std::size_t at = 0;
+    std::size_t next() { return bytes[at++ % kBytes]; }
+
+    Target target() {
+        const double share = double(next()) / 255;
+        switch (next() % 5) {
+            case 0:
+                return Target::ratio(share);
+            case 1:
+                return Target::triangles(std::uint64_t(share * 2000));
+            case 2:
+                return Target::vertices(std::uint64_t(share * 1000));
+            case 3:
+                return Target::error(share * share);
+            default:
+                return Target::pixels(share);
+        }
+    }
+};
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    constexpr std::size_t kSteps = 32;
-    if (size < kSteps + kHeaderBytes) return 0;
+    if (size < Script::kBytes) return 0;
     const auto* first = reinterpret_cast<const std::byte*>(data);
-    test::Bytes file(first, first + size - kSteps);
-    const std::uint8_t* step = data + size - kSteps;
-    reseal_blocks(file);
-    Limits limits;
-    limits.max_bytes = 64 << 20;
-
-    // Nothing, until header, table and base are there.
-    std::size_t arrived = 0, at = 0;
-    const auto next = [&] { return step[at++ % kSteps]; };
-    const auto arrive = [&] { arrived = std::min(file.size(), arrived + 1 + 16 * std::size_t{next()}); };
-    auto decoder = BlockDecoder::begin(std::span(file).first(0), limits);
-    require(!decoder.ok());
-    while (!decoder && arrived < file.size()) {
-        arrive();
-        decoder = BlockDecoder::begin(std::span(file).first(arrived), limits);
-        if (!decoder && decoder.error().code != ErrorCode::kTruncated) return 0;
+    test::Bytes file(first, first + size - Script::kBytes);
+    Script script{data + size - Script::kBytes};
+    if (script.next() % 4 != 0) test::reseal_all(file);
+    StreamOptions options;
+    options.limits.max_bytes = 64 << 20;
+    options.max_pending_bytes = 64 + 256 * script.next();
+    Stream stream(options);
+    Renderer renderer;
+    for (int step = 0; step < 96 && !stream.broken(); ++step) {
+        if (script.next() % 4 == 0) stream.set_target(script.target());
+        // What is wanted, less of it, or anything.
+        for (const ByteRange& range : stream.wants(64 + 64 * script.next(), script.next() % 3)) {
+            require(range.size > 0);
+            std::uint64_t offset = range.offset, length = range.size;
+            if (script.next() % 8 == 0) offset = file.size() * script.next() / 256;
+            if (script.next() % 4 == 0) length = length * script.next() / 255;
+            if (offset >= file.size()) continue;
+            length = std::min<std::uint64_t>(length, file.size() - offset);
+            if (!stream.feed(offset, std::span(file).subspan(offset, length)).ok() && stream.broken()) break;
+        }
+        if (stream.broken()) break;
+        if (script.next() % 4 == 0)
+            if (auto job = stream.take_job()) {
+                job->run();
+                static_cast<void>(stream.finish_job(*std::move(job)));
+            }
+        const std::size_t most = script.next() % 2 ? ~std::size_t{0} : 1 + script.next();
+        const auto updated = stream.update({most, 1 + script.next() % 4, {}});
+        if (updated) require(updated->splits <= most);
+        if (script.next() % 8 == 0) stream.jump_to_target();
+        if (stream.ready()) renderer.take(stream.buffers());
     }
-    if (!decoder) return 0;
-    require(progressive_mesh_fault(decoder->mesh()) == nullptr);
-    for (;;) {
-        const auto& blocks = decoder->info().blocks;
-        if (decoder->blocks() == blocks.size()) break;
-        const BlockInfo& block = blocks[decoder->blocks()];
-        if (block.offset + block.bytes > file.size()) break;
-        while (arrived < block.offset + block.bytes) arrive();
-        const std::size_t splits = decoder->mesh().splits.size();
-        // Another block's bytes, or half of it, is refused and harms nothing.
-        if (next() % 4 == 0)
-            require(!decoder->decode(std::span(file).subspan(block.offset, block.bytes - 1)).ok() &&
-                    decoder->mesh().splits.size() == splits);
-        if (!decoder->decode(std::span(file).subspan(block.offset, block.bytes)).ok()) return 0;
-        require(decoder->mesh().splits.size() == block.splits_end);
-    }
-    if (progressive_mesh_fault(decoder->mesh()) != nullptr) return 0;  // readers ask this of a whole file
-    LiveMesh live(decoder->release());
-    const std::size_t levels = live.max_level() + 1;
-    for (std::size_t i = 0; i < kSteps; ++i) {
-        const std::size_t level = (std::size_t{next()} << 8 | next()) % levels;
-        live.go_to(level);
-        const Mesh mesh = live.snapshot();
-        for (const Triangle& triangle : mesh.triangles)
-            for (const std::uint32_t corner : triangle) require(corner < mesh.positions.size());
+    require(!stream.broken() || stream.error().has_value());
+    if (stream.ready()) renderer.take(stream.buffers());
+    // What arrived whole is what the reader reads.
+    if (stream.complete() && !stream.broken()) {
+        stream.set_target(Target::ratio(1));
+        for (int i = 0; i < 1000 && !stream.broken() && stream.wants().empty(); ++i)
+            if (const auto updated = stream.update(); !updated || updated->reached) break;
+        const auto whole = read_progressive_mesh(file, options.limits);
+        if (whole && stream.buffers().level() == whole->splits.size()) {
+            const Mesh full = cut(*whole, whole->splits.size());
+            require(std::equal(full.triangles.begin(), full.triangles.end(),
+                               stream.buffers().triangles().begin(), stream.buffers().triangles().end()));
+        }
     }
     return 0;
 }
