@@ -245,6 +245,7 @@ class Residual:
     def __init__(self, scales, kinds):
         self.scales, self.kinds = scales, kinds
         self.second = [[Bit() for _ in range(4)] for _ in range(64)]
+        self.sign = [Bit() for _ in range(64)]
         self.digits = []
         for scale in range(scales):
             weight = [0] * 64
@@ -261,7 +262,7 @@ class Residual:
                     model.nodes[node] = Bit(min(max(one, 64), 65472), 4)
                 self.digits.append(model)
 
-    def decode(self, coder, scale, kind):
+    def decode(self, coder, scale, kind, side=None):
         scale = min(scale, self.scales - 1)
         count = self.digits[scale * self.kinds + kind].decode(coder)
         if count == 0:
@@ -274,7 +275,7 @@ class Residual:
             read = 2 * read + coder.bit(second[read - 1])
         if count > 3:
             read = read << (count - 3) | coder.raw(count - 3)
-        return -read if coder.raw(1) else read
+        return -read if (coder.raw(1) if side is None else coder.bit(self.sign[side])) else read
 
 
 # ---- Header, details, table
@@ -571,13 +572,15 @@ class Places:
         excess = max(0, largest.bit_length() - 24)
         normal = [n >> excess for n in normal]
         spread = [(sum(abs(16 * o[a] - along[a]) for o in corners) // 4 * (65536 // count)) >> 16 for a in range(3)]
-        roughness = 0
+        roughness, rise, sinks = 0, 0, 0
         if normal[c] != 0:
             middle = [mean16(sum(o[a] for o in corners), count) for a in range(3)]
             height = lambda d: sum((d[a] - middle[a]) * normal[a] for a in range(3))
             total = sum(abs(height([16 * x for x in o])) >> 4 for o in corners)
             mean = (total >> 8) * (65536 // count) >> 8
             predicted = abs(height(across)) >> 4
+            rise = half_octave(4 * predicted) - half_octave(abs(normal[c]))
+            sinks = int((height(across) < 0) != (normal[c] < 0))
             roughness = min(4 * (mean + predicted // 2) // abs(normal[c]), 1 << 26)
 
         a, b = 1 if c == 0 else 0, 1 if c == 2 else 2
@@ -603,12 +606,13 @@ class Places:
         step_b = self.second[kind].decode(coder, scale_b - 2 * shift_b, missed_a + regular)
         out[b] = within(at_b + (step_b << shift_b))
         missed = max(missed_a, departure(step_b, scale_b - 2 * shift_b))
+        side = 2 * min(max(rise - mean_scale + 11, 0), 11) + sinks
         slide = 0
         if normal[c] != 0:
             side = sum((16 * (out[x] - origin[x]) - across[x]) * normal[x] for x in (a, b))
             slide = quotient(side, normal[c]) if normal[c] > 0 else quotient(-side, -normal[c])
         at_c = within(origin[c] + ((across[c] - slide + 8) >> 4))
-        out[c] = within(at_c + self.third[kind].decode(coder, flatness, missed))
+        out[c] = within(at_c + self.third[kind].decode(coder, flatness, missed, side))
         return out
 
     def decode_free(self, coder, near):

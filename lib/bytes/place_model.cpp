@@ -142,7 +142,10 @@ void PlaceModel::measure(const LiveStars& mesh, const Ring& ring, const Lattice3
             sum += std::abs(height({16 * d[0], 16 * d[1], 16 * d[2]})) >> 4;
         }
         const std::int64_t mean = (sum >> 8) * kReciprocals[count] >> 8;
-        const std::int64_t predicted = std::abs(height(mix(g, 1))) >> 4;
+        const std::int64_t over = height(mix(g, 1)), predicted = std::abs(over) >> 4;
+        g.rise = static_cast<std::int32_t>(half_octave(static_cast<std::uint64_t>(4 * predicted))) -
+                 static_cast<std::int32_t>(half_octave(static_cast<std::uint64_t>(std::abs(g.normal[c]))));
+        g.sinks = (over < 0) != (g.normal[c] < 0);
         g.roughness = static_cast<std::uint32_t>(
             std::min<std::int64_t>(4 * (mean + predicted / 2) / std::abs(g.normal[c]), 1 << 26));
     }

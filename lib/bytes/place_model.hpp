@@ -39,7 +39,10 @@ struct PlaceGuides {
     std::size_t across = 2;  ///< The axis coded last.
     std::int32_t lean = 0;   ///< By how much the second axis follows the first, in 1/1024.
     std::array<std::uint32_t, 3> spread{};  ///< Mean distance of ring and prediction along each axis, in 1/4.
-    std::uint32_t roughness = 0;            ///< How far the ring is from flat, along `across`, in 1/4.
+    std::int32_t rise =
+        0;               ///< log2 of how high the point predicted is over the ring, in half octaves of 1/4.
+    bool sinks = false;  ///< That is towards lesser numbers along `across`.
+    std::uint32_t roughness = 0;  ///< How far the ring is from flat, along `across`, in 1/4.
 };
 
 /// `polygon` is the ring of the vertex to place, in order; `through` tells its first and last (the wings).
@@ -139,11 +142,14 @@ Lattice3 PlaceModel::code(Coder& coder, PlaceGuides& g, const Lattice3& place, b
     const std::int64_t slid = slide(16 * (std::int64_t{out[a]} - g.from[a]) - across[a],
                                     16 * (std::int64_t{out[b]} - g.from[b]) - across[b]);
     const std::int32_t at_c = within_reach(g.from[c] + ((across[c] - slid + 8) >> 4));
+    // Predictions go too far as a rule, or not far enough.
+    const std::int32_t height = std::clamp(g.rise - static_cast<std::int32_t>(mean_scale) + 11, 0, 11);
+    const std::uint32_t side = 2 * static_cast<std::uint32_t>(height) + std::uint32_t{g.sinks};
     std::int64_t wanted_c = place[c];
     if (!Coder::kDecodes && rough)  // as high over the plane as the place asked for
         wanted_c -= slide(std::int64_t{out[a]} - place[a], std::int64_t{out[b]} - place[b]);
     out[c] = within_reach(std::int64_t{at_c} +
-                          third_[kind].code(coder, flatness, missed, within_reach(wanted_c) - at_c));
+                          third_[kind].code(coder, flatness, missed, within_reach(wanted_c) - at_c, side));
     return out;
 }
 

@@ -20,6 +20,9 @@ constexpr std::uint32_t kLosslessLatticeBits = 18;
 /// Blocks of fewer bytes would pay more for their place in the table.
 constexpr std::size_t kLeastBlock = 1024;
 
+/// Where a sweep ends the error falls: a block of this share of what it may hold ends there too.
+constexpr double kEnoughBlock = 0.7;
+
 Error cannot(std::string message) {
     return {ErrorCode::kArgument, std::move(message), Error::kNowhere, 0};
 }
@@ -104,12 +107,11 @@ Result<Encoded> encode(const ProgressiveMesh& mesh, const WriteOptions& options)
     out.base.insert(out.base.end(), extras.begin(), extras.end());
     output.add_base(encoder.codec());
 
-    // Blocks start small, so that the first bytes already refine, and grow with what precedes them. Where a
-    // sweep ends the error falls, so a block that is half as large ends there.
+    // Blocks start small, so that the first bytes already refine, and grow with what precedes them.
     std::size_t before_blocks = kHeaderBytes + 64 + out.base.size();
     std::size_t target = 0;
     const auto next_target = [&] {
-        target = std::min<std::size_t>(options.block_bytes, std::max(kLeastBlock, before_blocks / 4));
+        target = std::min<std::size_t>(options.block_bytes, std::max(kLeastBlock, before_blocks / 3));
     };
     next_target();
     std::uint32_t made = 0, ended = 0;
@@ -134,7 +136,8 @@ Result<Encoded> encode(const ProgressiveMesh& mesh, const WriteOptions& options)
     encoder.code_splits(coder, [&](const SplitPlan& plan, float error, bool sweep_end) {
         output.add(plan, error);
         ++made;
-        if (coder.size() >= target || (sweep_end && 2 * coder.size() >= target)) end_block();
+        if (coder.size() >= target || (sweep_end && double(coder.size()) >= kEnoughBlock * double(target)))
+            end_block();
     });
     if (made > ended) end_block();
 
