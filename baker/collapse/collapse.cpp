@@ -61,7 +61,8 @@ Result<CollapseResult> collapse(const Mesh& mesh, const CollapseOptions& options
     result.mesh.origin = mesh.origin;
     result.report.collapse_cpu_seconds = cpu_seconds() - start;
     start = cpu_seconds();
-    const bool put_off = options.put_off_outliers && options.cost != Cost::kPaper;
+    const bool put_off =
+        options.put_off_outliers && options.cost != Cost::kPaper && options.placement != Placement::kEndpoint;
     if (put_off || options.calibrate) {
         std::vector<float> deviations = measure_collapses(result.mesh, progress);
         if (deviations.size() != result.mesh.splits.size()) return cancelled;

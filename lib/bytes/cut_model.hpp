@@ -35,8 +35,10 @@ class CutModel {
     /// In a closed fan every run of 1 to size - 1 sectors, both wings. In an open one runs of 1 and more with
     /// both wings; or a run from the first sector on, none to all, with the last wing alone; or one up to the
     /// last sector with the first wing alone.
+    /// Sectors that have a corner from `locked` on are no part of any. False if no run is left.
     template <class Coder>
-    Cut code(Coder& coder, const LiveStars& mesh, const Star& star, const Cut& cut);
+    bool code(Coder& coder, const LiveStars& mesh, const Star& star, std::uint32_t locked, const Cut& cut,
+              Cut& out);
 
   private:
     static constexpr std::uint16_t kMostSeen = 1000;
@@ -65,6 +67,7 @@ class CutModel {
     std::array<BitModel, 8> both_;
     BitModel last_;
     std::array<std::uint8_t, Star::kLargestFan + 1> edge_kind_, chord_kind_;
+    static constexpr std::int32_t kShut = INT32_MIN;
     static constexpr std::size_t kMostRuns = Star::kLargestFan * Star::kLargestFan;
     std::array<std::uint32_t, kMostRuns> weights_;
     std::array<std::int32_t, kMostRuns> scores_;
@@ -82,9 +85,10 @@ inline constexpr std::array<std::uint16_t, 12 * 32 + 1> kFarBelow = [] {
 }();
 
 template <class Coder>
-Cut CutModel::code(Coder& coder, const LiveStars& mesh, const Star& star, const Cut& cut) {
+bool CutModel::code(Coder& coder, const LiveStars& mesh, const Star& star, std::uint32_t locked,
+                    const Cut& cut, Cut& out) {
     const std::uint32_t n = star.size, last = star.ring_size() - 1;
-    Cut out;
+    out = {};
     if (!star.closed) {
         const bool both = coder.bit(both_[std::min<std::uint32_t>(n, 7)], cut.first_wing && cut.last_wing);
         if (!both) {
@@ -113,6 +117,12 @@ Cut CutModel::code(Coder& coder, const LiveStars& mesh, const Star& star, const 
         head[i] = out.first_wing ? wing[i] - before[i + 1] : -before[i];
         tail[i] = out.last_wing ? wing[i] + before[i] : before[i + 1];
     }
+    // How many sectors before each are locked.
+    std::array<std::uint32_t, 2 * Star::kLargestFan + 1> shut{};
+    for (std::uint32_t i = 0; i < (star.closed ? 2 * n : n); ++i) {
+        const std::uint32_t at = i >= n ? i - n : i;
+        shut[i + 1] = shut[i] + (star.ring[at] >= locked || star.ring_at(at + 1) >= locked);
+    }
     const std::size_t family = star.closed ? 0 : out.first_wing && out.last_wing ? 1 : 2;
     const auto& lengths = lengths_[family].count[std::min<std::size_t>(n, kLongest)];
     const std::uint32_t shortest = family == 2 ? 0 : 1, longest = star.closed ? n - 1 : n;
@@ -120,7 +130,7 @@ Cut CutModel::code(Coder& coder, const LiveStars& mesh, const Star& star, const 
         return family == 2 ? 1u : star.closed ? n : n + 1 - length;
     };
     std::size_t count = 0, wanted = 0;
-    std::int32_t best = INT32_MIN;
+    std::int32_t best = kShut;
     for (std::uint32_t length = shortest; length <= longest; ++length) {
         const std::uint32_t first = family == 2 && out.first_wing ? last - length : 0, runs = runs_of(length);
         const std::size_t scaled = n <= kLongest ? length : std::size_t{length} * kLongest / n;
@@ -129,13 +139,18 @@ Cut CutModel::code(Coder& coder, const LiveStars& mesh, const Star& star, const 
         const std::int32_t *from = head.data() + first, *to = tail.data() + first + length;
         std::int32_t* score = scores_.data() + count;
         for (std::uint32_t i = 0; i < runs; ++i) {
-            score[i] = all + from[i] + to[i];
+            score[i] = shut[first + i] == shut[first + i + length] ? all + from[i] + to[i] : kShut;
             best = std::max(best, score[i]);
         }
         count += runs;
     }
+    if (best == kShut) return false;
     std::uint32_t sum = 0;
     for (std::size_t i = 0; i < count; ++i) {
+        if (scores_[i] == kShut) {
+            weights_[i] = 0;
+            continue;
+        }
         const std::int32_t below = std::min((best - scores_[i]) >> 7, 12 * 32);
         sum += weights_[i] = kFarBelow[static_cast<std::size_t>(below)];
     }
@@ -144,7 +159,7 @@ Cut CutModel::code(Coder& coder, const LiveStars& mesh, const Star& star, const 
     for (std::uint32_t runs; chosen >= (runs = runs_of(out.length)); chosen -= runs) ++out.length;
     out.begin = (family == 2 && out.first_wing ? last - out.length : 0) + chosen;
     learn(star, out);
-    return out;
+    return true;
 }
 
 }  // namespace vsplit

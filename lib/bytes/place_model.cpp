@@ -109,9 +109,20 @@ void PlaceModel::measure(const LiveStars& mesh, const Ring& ring, const Lattice3
 
     const auto along = mix(g, 0);
     std::array<std::int64_t, 3> spread{};
+    const std::size_t first = c == 0 ? 1 : 0, second = c == 2 ? 1 : 2;
+    std::int64_t squares = 0, products = 0;
     for (std::uint32_t i = 0; i < count; ++i) {
         const auto d = minus(at(i), g.from);
         for (std::size_t a = 0; a < 3; ++a) spread[a] += std::abs(16 * d[a] - along[a]);
+        squares += d[first] * d[first];
+        products += d[first] * d[second];
+    }
+    squares = count * squares - centre[first] * centre[first];
+    products = count * products - centre[first] * centre[second];
+    g.lean = 0;
+    if (squares > 0) {
+        const std::int64_t most = 4 * squares;
+        g.lean = static_cast<std::int32_t>(768 * std::clamp(products, -most, most) / squares);
     }
     for (std::size_t a = 0; a < 3; ++a)
         g.spread[a] = static_cast<std::uint32_t>((spread[a] / 4 * kReciprocals[count]) >> 16);
@@ -131,7 +142,10 @@ void PlaceModel::measure(const LiveStars& mesh, const Ring& ring, const Lattice3
             sum += std::abs(height({16 * d[0], 16 * d[1], 16 * d[2]})) >> 4;
         }
         const std::int64_t mean = (sum >> 8) * kReciprocals[count] >> 8;
-        const std::int64_t predicted = std::abs(height(mix(g, 1))) >> 4;
+        const std::int64_t over = height(mix(g, 1)), predicted = std::abs(over) >> 4;
+        g.rise = static_cast<std::int32_t>(half_octave(static_cast<std::uint64_t>(4 * predicted))) -
+                 static_cast<std::int32_t>(half_octave(static_cast<std::uint64_t>(std::abs(g.normal[c]))));
+        g.sinks = (over < 0) != (g.normal[c] < 0);
         g.roughness = static_cast<std::uint32_t>(
             std::min<std::int64_t>(4 * (mean + predicted / 2) / std::abs(g.normal[c]), 1 << 26));
     }

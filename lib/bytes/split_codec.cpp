@@ -42,6 +42,9 @@ SplitCodec::SplitCodec(const StreamShape& shape, const PlaceWeights& weights)
 
 template <class Coder>
 const char* SplitCodec::code_head(Coder& coder, SweepHead& head) {
+    const std::uint32_t kind = kinds_.code(coder, static_cast<std::uint32_t>(head.kind));
+    if (kind > static_cast<std::uint32_t>(SweepKind::kBatchAll)) return "a sweep is of no known kind";
+    head.kind = kind_ = static_cast<SweepKind>(kind);
     head.marked = marked_.code(coder, head.marked);
     head.unmarked = unmarked_.code(coder, head.unmarked);
     const std::uint32_t fall = error_.code(coder, error_bits_ - head.error_bits);
@@ -51,7 +54,8 @@ const char* SplitCodec::code_head(Coder& coder, SweepHead& head) {
     if (head.marked == 0 && head.unmarked == 0) return "a sweep is empty";
     ++sweep_;
     cursor_ = 0;
-    asks_.begin(alive);
+    older_ = alive;
+    if (!is_batch()) asks_.begin(alive);
     sparse_ = std::uint64_t{head.marked} * 64 < alive;
     return nullptr;
 }
@@ -74,6 +78,22 @@ bool SplitCodec::ask(Coder& coder, std::uint32_t v, bool splits) {
 }
 
 template <class Coder>
+bool SplitCodec::ask_batch(Coder& coder, std::uint32_t v, bool splits) {
+    const LiveVertex& vertex = live.vertices[v];
+    const Lattice3 bump = live.bump(v);
+    std::uint64_t squared = 1;
+    for (const std::int32_t b : bump) squared += static_cast<std::uint64_t>(std::int64_t{b} * b);
+    const std::int32_t size = log2_fixed(squared);
+    const std::size_t valence = std::clamp<std::uint32_t>(vertex.star, 3, 12) - 3;
+    const std::size_t locked = std::min(vertex.star - unlocked(vertex), 6u);
+    const std::size_t acted = std::min(sweep_ - vertex.acted, 2u);
+    const auto bumpy = static_cast<std::size_t>(std::clamp((size - split_size_ + 6 * 256) >> 8, 0, 9));
+    const bool answer = coder.bit(batch_mark_[((valence * 7 + locked) * 3 + acted) * 10 + bumpy], splits);
+    if (answer) split_size_ += (size - split_size_) >> 5;
+    return answer;
+}
+
+template <class Coder>
 const char* SplitCodec::code_mark(Coder& coder, std::uint32_t& primary) {
     if (!Coder::kWrites && !Coder::kDecodes) return nullptr;
     if (sparse_) {
@@ -84,6 +104,15 @@ const char* SplitCodec::code_mark(Coder& coder, std::uint32_t& primary) {
         primary = gap < live.vertex_count() - cursor_ ? cursor_ + gap : gap - (live.vertex_count() - cursor_);
         cursor_ = primary;
         return nullptr;
+    }
+    if (is_batch()) {
+        for (; cursor_ < older_; ++cursor_) {
+            if (kind_ == SweepKind::kBatch && unlocked(live.vertices[cursor_]) == 0) continue;
+            if (!ask_batch(coder, cursor_, cursor_ == primary)) continue;
+            primary = cursor_;
+            return nullptr;
+        }
+        return "a sweep marks fewer vertices than it announces";
     }
     for (std::uint32_t v; (v = asks_.next()) != kNoVertex;) {
         // What the next in line need comes from memory meanwhile: the list of the seventh, the triangles of
@@ -139,6 +168,8 @@ const char* SplitCodec::code_birth(Coder& coder, std::uint32_t primary, std::siz
     out.births.emplace_back();
     if (const char* fault = code_parent(coder, primary, wanted, index, out)) return fault;
     const std::uint32_t parent = out.births[index].parent;
+    if (Coder::kDecodes && is_batch() && parent != kNoVertex && parent >= older_)
+        return "a batch splits a vertex that it bore";
     is_run_ = false;
     bool moves = false;
     std::size_t move = 0;
@@ -292,7 +323,12 @@ const char* SplitCodec::code_taken(Coder& coder, const SplitPlan& wanted, std::s
         is_run_ = coder.bit(regular_[star_.closed],
                             !Coder::kDecodes && find_cut(taken, wanted, birth_id(index), cut));
         if (is_run_) {
-            run_ = Coder::kWrites || Coder::kDecodes ? cut_.code(coder, live, star_, cut) : cut;
+            if (Coder::kWrites || Coder::kDecodes) {
+                if (!cut_.code(coder, live, star_, is_batch() ? older_ : kNoVertex, cut, run_))
+                    return "a run has no place in its fan";
+            } else {
+                run_ = cut;
+            }
             take_run(birth_id(index), out);
             return Coder::kDecodes && out.taken.size() > room.corners
                        ? "a block changes more corners than it announces"
@@ -307,6 +343,8 @@ const char* SplitCodec::code_taken(Coder& coder, const SplitPlan& wanted, std::s
         if (star_.size > 64 ? coder.raw(1, is_taken) != 0 : coder.bit(in_mask_, is_taken)) {
             if (Coder::kDecodes && out.taken.size() >= room.corners)
                 return "a block changes more corners than it announces";
+            if (Coder::kDecodes && is_batch() && is_locked(live.triangles[corner / 3]))
+                return "a batch changes a triangle twice";
             out.taken.push_back(corner);
         }
     }
