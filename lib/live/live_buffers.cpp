@@ -29,7 +29,7 @@ void flip_values(std::span<const std::uint32_t> vertices, float* alive, const st
                  std::size_t components) {
     const std::size_t n = kComponents != 0 ? kComponents : components;
     for (std::size_t i = 0; i < vertices.size(); ++i, moved += n) {
-        if (i + kVerticesAhead < vertices.size()) prefetch(alive + n * vertices[i + kVerticesAhead]);
+        if (i + kVerticesAhead < vertices.size()) prefetch(alive + n * vertices[i + kVerticesAhead], n);
         float* const a = alive + n * vertices[i];
         for (std::size_t k = 0; k < n; ++k)
             a[k] = std::bit_cast<float>(std::bit_cast<std::uint32_t>(a[k]) ^ moved[k]);
@@ -58,7 +58,7 @@ void step_places(std::span<const std::uint32_t> vertices, Float3* alive,
                  const std::array<std::int16_t, 3>* steps, const PlaceGrid& grid) {
     const double inverse = 1 / grid.step;
     for (std::size_t i = 0; i < vertices.size(); ++i) {
-        if (i + kVerticesAhead < vertices.size()) prefetch(alive + vertices[i + kVerticesAhead]);
+        if (i + kVerticesAhead < vertices.size()) prefetch(&alive[vertices[i + kVerticesAhead]].x, 3);
         float* const a = &alive[vertices[i]].x;
         for (std::size_t axis = 0; axis < 3; ++axis) {
             const std::int32_t by = steps[i][axis];

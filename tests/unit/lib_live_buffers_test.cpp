@@ -195,7 +195,8 @@ void check(const ProgressiveMesh& mesh, std::uint32_t seed) {
     const DirtyRanges clean = live.take_dirty();
     CHECK(clean.vertices_begin >= clean.vertices_end);
     CHECK(clean.triangles_begin >= clean.triangles_end);
-    CHECK(live.memory() >= memory);
+    // What takes splits is let go of when all are there: a number for each vertex.
+    CHECK(live.memory() + 4 * mesh.positions.size() >= memory);
 }
 
 /// Counts and levels for them, of what is known, at any level.
