@@ -12,7 +12,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdlib>
 
 #include "studio_window.hpp"
 
@@ -432,18 +431,12 @@ void StudioWindow::run() {
     interactor_->Start();
 }
 
-bool run_window(std::unique_ptr<Document> document, const WindowOptions& options) {
-    const char* display = std::getenv("DISPLAY");
-    if (!display || !*display) {
-        fmt::print(stderr, "vsplit: no display: set DISPLAY, or use --script\n");
-        return false;
-    }
+void run_window(std::unique_ptr<Document> document, const WindowOptions& options) {
     StudioWindow window(std::move(document), options);
     if (options.bench)
         window.bench();
     else
         window.run();
-    return true;
 }
 
 }  // namespace vsplit::studio
