@@ -280,6 +280,7 @@ bool Document::every_part_closed() const {
 void Document::adopt(ProgressiveMesh record) {
     const double ratio_shown = live_ ? ratio() : 1;
     surface_.reset();
+    refined_.reset();
     origins_ = bake::record_origins(source_.mesh, record);
     record_of_.assign(source_.mesh.positions.size(), kNoVertex);
     for (std::uint32_t v = 0; v < origins_.size(); ++v)
@@ -298,27 +299,27 @@ void Document::adopt(ProgressiveMesh record) {
     live_->go_to(level_for_ratio(ratio_shown));
 }
 
-Mesh Document::refined_in_place() const {
-    const std::uint32_t alive = vertices_at(live_->state(), live_->level());
+Result<Mesh> Document::refined_in_place() {
+    // An error of what is marked counts so much more that none of it is below any level's.
+    constexpr float kMarked = 1e12f;
+    if (!refined_) {
+        LiveMesh copy = *live_;
+        auto made = ViewMesh::make(copy.release());
+        if (!made) return made.error();
+        refined_.emplace(std::move(*made));
+    }
     const bake::Marks& marks = painting_.marks();
-    std::vector<std::uint32_t> to(full_.positions.size());
+    std::vector<float> priorities(origins_.size(), 1);
+    for (std::size_t v = 0; v < priorities.size(); ++v)
+        if (origins_[v] != kNoVertex && marks.region[origins_[v]] != 0) priorities[v] = kMarked;
+    if (const Status set = refined_->set_priority(priorities); !set) return set.error();
+    refined_->rank();
+    refined_->refine_to(refined_->rank_for_error(live_->error()));
     Mesh mesh;
-    mesh.positions = full_.positions;
-    mesh.origin = full_.origin;
-    for (std::uint32_t v = 0; v < to.size(); ++v) {
-        const bool marked = origins_[v] != kNoVertex && marks.region[origins_[v]] != 0;
-        const std::uint32_t parent = live_->state().parents[v];
-        to[v] = v < alive || marked || parent == kNoVertex ? v : to[parent];
-        if (v < alive && !marked) mesh.positions[v] = live_->positions()[v];
-    }
-    // A marked parent stands where it is at the end, so what hangs on it is not torn off.
-    for (std::size_t t = 0; t < full_.triangles.size(); ++t) {
-        const Triangle& corners = full_.triangles[t];
-        const Triangle moved{to[corners[0]], to[corners[1]], to[corners[2]]};
-        if (moved[0] == moved[1] || moved[1] == moved[2] || moved[2] == moved[0]) continue;
-        mesh.triangles.push_back(moved);
-        if (!full_.groups.empty()) mesh.groups.push_back(full_.groups[t]);
-    }
+    mesh.positions.assign(refined_->positions().begin(), refined_->positions().end());
+    mesh.triangles.assign(refined_->triangles().begin(), refined_->triangles().end());
+    mesh.groups.assign(refined_->groups().begin(), refined_->groups().end());
+    mesh.origin = live_->state().origin;
     return mesh;
 }
 

@@ -17,6 +17,7 @@
 #include "vsplit/bake/collapse.hpp"
 #include "vsplit/bake/scene.hpp"
 #include "vsplit/live_mesh.hpp"
+#include "vsplit/view_mesh.hpp"
 #include "vsplit/write.hpp"
 
 namespace vsplit::studio {
@@ -100,9 +101,11 @@ class Document {
     /// Goes over to a record of painted(); the ratio shown stays.
     void adopt(ProgressiveMesh record);
 
-    /// The level with all that is marked at full detail, at once and without a bake: triangles of the full
-    /// model, their corners moved to where their vertices are at this level unless they are marked.
-    Mesh refined_in_place() const;
+    /// The level with all that is marked at full detail, at once and without a bake: the splits of the record
+    /// whose error is above the level's, and all that the marked vertices need (ViewMesh, by priorities at run
+    /// time). Vertices keep the record's numbers: those that no triangle has are not there. Errors: kLimit, as
+    /// ViewMesh::make().
+    Result<Mesh> refined_in_place();
 
     /// Marks as a file has them, for the file's own vertices.
     std::vector<std::byte> encode_marks() const;
@@ -144,6 +147,7 @@ class Document {
     Placement placement_;
     std::vector<bake::SceneMaterial> materials_;  // by group
     Shown shown_;                                 // the level, if it is placed; made with the surface
+    std::optional<ViewMesh> refined_;             // made when first needed
     std::unique_ptr<Surface> surface_;            // of the level as shown, made when first needed
 };
 

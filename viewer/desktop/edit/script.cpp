@@ -281,7 +281,9 @@ Json Runner::run(const Json& step) {
         write(step, document_.encode_weights());
     } else if (what == "refine") {
         // What is shown: the marked regions in full, the rest as it is.
-        Mesh mesh = document_.refined_in_place();
+        auto made = document_.refined_in_place();
+        if (!made) throw Fault{made.error()};
+        Mesh mesh = std::move(*made);
         if (document_.placed()) {
             Shown shown = document_.show(mesh.positions, mesh.triangles, mesh.groups);
             mesh = {};

@@ -12,7 +12,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdlib>
 
 #include "studio_window.hpp"
 
@@ -191,7 +190,13 @@ void StudioWindow::show_pane(Pane& pane, std::size_t level) {
     shown_coarse_ = shown_coarse_ || now < level;
     pane.live->go_to(now);
     if (refined_ && &pane == &left_ && !moving_) {
-        const Mesh mesh = document_->refined_in_place();
+        const Result<Mesh> made = document_->refined_in_place();
+        if (!made) {
+            refined_ = false;
+            say(made.error().describe());
+            return show_pane(pane, level);
+        }
+        const Mesh& mesh = *made;
         std::vector<Rgb> colours(mesh.positions.size());
         for (std::uint32_t v = 0; v < colours.size(); ++v) colours[v] = plain_colour(*document_, v);
         if (document_->placed()) {
@@ -432,18 +437,12 @@ void StudioWindow::run() {
     interactor_->Start();
 }
 
-bool run_window(std::unique_ptr<Document> document, const WindowOptions& options) {
-    const char* display = std::getenv("DISPLAY");
-    if (!display || !*display) {
-        fmt::print(stderr, "vsplit: no display: set DISPLAY, or use --script\n");
-        return false;
-    }
+void run_window(std::unique_ptr<Document> document, const WindowOptions& options) {
     StudioWindow window(std::move(document), options);
     if (options.bench)
         window.bench();
     else
         window.run();
-    return true;
 }
 
 }  // namespace vsplit::studio
