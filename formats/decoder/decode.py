@@ -599,6 +599,8 @@ class Places:
         products = count * sum(o[a] * o[b] for o in corners) - sum_a * sum_b
         lean = 0
         if squares > 0:
+            excess = max(0, squares.bit_length() - 50)
+            squares, products = squares >> excess, products >> excess
             products = min(max(products, -4 * squares), 4 * squares)
             lean = 768 * abs(products) // squares * (-1 if products < 0 else 1)
         at_b = within(at_b + ((lean * (out[a] - at_a) + 512) >> 10))
