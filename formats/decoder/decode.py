@@ -599,6 +599,8 @@ class Places:
         products = count * sum(o[a] * o[b] for o in corners) - sum_a * sum_b
         lean = 0
         if squares > 0:
+            excess = max(0, squares.bit_length() - 50)
+            squares, products = squares >> excess, products >> excess
             products = min(max(products, -4 * squares), 4 * squares)
             lean = 768 * abs(products) // squares * (-1 if products < 0 else 1)
         at_b = within(at_b + ((lean * (out[a] - at_a) + 512) >> 10))
@@ -606,13 +608,13 @@ class Places:
         step_b = self.second[kind].decode(coder, scale_b - 2 * shift_b, missed_a + regular)
         out[b] = within(at_b + (step_b << shift_b))
         missed = max(missed_a, departure(step_b, scale_b - 2 * shift_b))
-        side = 2 * min(max(rise - mean_scale + 11, 0), 11) + sinks
+        leans = 2 * min(max(rise - mean_scale + 11, 0), 11) + sinks
         slide = 0
         if normal[c] != 0:
             side = sum((16 * (out[x] - origin[x]) - across[x]) * normal[x] for x in (a, b))
             slide = quotient(side, normal[c]) if normal[c] > 0 else quotient(-side, -normal[c])
         at_c = within(origin[c] + ((across[c] - slide + 8) >> 4))
-        out[c] = within(at_c + self.third[kind].decode(coder, flatness, missed, side))
+        out[c] = within(at_c + self.third[kind].decode(coder, flatness, missed, leans))
         return out
 
     def decode_free(self, coder, near):

@@ -121,6 +121,10 @@ void PlaceModel::measure(const LiveStars& mesh, const Ring& ring, const Lattice3
     products = count * products - centre[first] * centre[second];
     g.lean = 0;
     if (squares > 0) {
+        const int over =
+            std::max(0, static_cast<int>(std::bit_width(static_cast<std::uint64_t>(squares))) - 50);
+        squares >>= over;
+        products >>= over;
         const std::int64_t most = 4 * squares;
         g.lean = static_cast<std::int32_t>(768 * std::clamp(products, -most, most) / squares);
     }

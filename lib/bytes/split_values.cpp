@@ -409,8 +409,10 @@ void SplitCodec::apply_run(const SplitPlan& plan) {
 
 void SplitCodec::count_locked(std::uint32_t first) {
     touched_.clear();
-    for (std::uint32_t v = first; v < live.vertex_count(); ++v)
-        for (const std::uint32_t corner : live.corners(v)) touched_.push_back(corner / 3);
+    for (std::uint32_t v = first; v < live.vertex_count(); ++v) {
+        live.gather_corners(v, scratch_);
+        for (const std::uint32_t corner : scratch_) touched_.push_back(corner / 3);
+    }
     std::sort(touched_.begin(), touched_.end());
     touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
     for (const std::uint32_t t : touched_)
