@@ -16,6 +16,8 @@ namespace vsplit {
 namespace {
 
 constexpr std::uint32_t kLosslessLatticeBits = 18;
+/// About so many splits tell the weights of prediction.
+constexpr std::size_t kFitted = 1 << 16;
 
 Error cannot(std::string message) {
     return {ErrorCode::kArgument, std::move(message), Error::kNowhere, 0};
@@ -82,6 +84,7 @@ Result<Encoded> encode(const ProgressiveMesh& mesh, const WriteOptions& options)
         NoCoder look;
         RecordEncoder first(mesh, numbers, sweeps);
         first.codec().fit = &fit;
+        first.codec().fit_every = static_cast<std::uint32_t>(mesh.splits.size() / kFitted + 1);
         first.code_splits(look, [](const SplitPlan&, float) {});
     }
     numbers.details.weights = fit.solve();
