@@ -79,6 +79,8 @@ class Region {
     /// Gets ready for vertices `low` to `high` - 1 and costs of buckets `begin` to `end` - 1.
     /// May take `room` entries of the mesh's arena, which are there; the whole mesh makes its own room.
     void open(std::uint32_t low, std::uint32_t high, Bucket begin, Bucket end, std::size_t room = 0);
+    /// Frees the record.
+    void close();
     /// Lines up an item of the range that waits within the window.
     void line_up(std::uint32_t item) { queue_.line_up(item); }
     /// Collapses until nothing in the window waits. `between` is called now and then, and stops if false.
@@ -142,6 +144,7 @@ class Region {
     /// The edges that `u` owns, with their costs.
     void list_edges(std::uint32_t u, EdgeList& list) const;
     void prefetch() const;
+    void fetch_around(const EdgeStar& star) const;
     void process(std::uint32_t u, Bucket bucket);
     void process_component(std::uint32_t component, Bucket bucket);
     /// kWaits sets `cost` to what it has to wait for (infinity: never as things are).

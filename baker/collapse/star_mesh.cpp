@@ -136,6 +136,10 @@ void StarMesh::classify(std::uint32_t v, ClassifyScratch& scratch) {
         vertex.kind = VertexKind::kDead;
         return;
     }
+    if (!has_wedges() && is_closed_fan(v)) {
+        vertex.kind = VertexKind::kInner;
+        return;
+    }
     neighbours_of(*this, v, ring);
     std::size_t special = 0;
     const Neighbour* curve[2] = {};
@@ -184,6 +188,28 @@ void StarMesh::classify(std::uint32_t v, ClassifyScratch& scratch) {
     bool connected = true;
     for (std::uint32_t i = 1; i < ring.size(); ++i) connected &= find_root(roots, i) == find_root(roots, 0);
     if (connected) vertex.kind = special == 0 ? VertexKind::kInner : VertexKind::kCurve;
+}
+
+bool StarMesh::is_closed_fan(std::uint32_t v) const {
+    constexpr std::size_t kMost = 16;
+    std::uint32_t next[kMost], last[kMost];
+    const auto fan = star(v);
+    if (fan.size() > kMost) return false;
+    for (std::size_t i = 0; i < fan.size(); ++i) {
+        const Triangle& c = triangles_[fan[i]];
+        const std::size_t k = c[0] == v ? 0 : c[1] == v ? 1 : 2;
+        next[i] = c[k == 2 ? 0 : k + 1];
+        last[i] = c[k == 0 ? 2 : k - 1];
+    }
+    // From triangle to triangle across the edges at v: back at the first after all of them, and not before.
+    std::size_t at = 0;
+    for (std::size_t step = 0; step < fan.size(); ++step) {
+        const std::uint32_t edge = last[at];
+        for (at = 0; at < fan.size() && next[at] != edge; ++at) {
+        }
+        if (at == fan.size() || (at == 0) != (step + 1 == fan.size())) return false;
+    }
+    return fan.size() > 2;
 }
 
 std::size_t StarMesh::fold(std::uint32_t child, std::uint32_t parent, std::span<const WedgePair> pairs,

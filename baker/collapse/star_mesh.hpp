@@ -150,6 +150,8 @@ class StarMesh {
 
   private:
     void classify();
+    /// Surely one closed fan, consistently oriented, of few triangles.
+    bool is_closed_fan(std::uint32_t v) const;
 
     std::vector<Vertex> vertices_;
     std::vector<Triangle> triangles_;

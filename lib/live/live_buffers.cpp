@@ -86,7 +86,10 @@ void swap_any(std::span<const std::uint32_t> vertices, float* alive, float* move
 
 void LiveBuffers::begin(const ProgressiveMesh& mesh, std::uint32_t vertices, std::uint32_t triangles,
                         std::uint32_t splits, std::uint32_t corner_changes, std::uint32_t moves) {
+    const bool tracks = tracks_;
     *this = LiveBuffers();
+    tracks_ = tracking_ = tracks;
+    if (tracking_) vertex_runs_.resize(vertices), triangle_runs_.resize(triangles);
     totals_ = {vertices, triangles, corner_changes, moves, 0, 0, 0};
     total_splits_ = splits;
     corner_bytes_ = std::uint64_t{3} * triangles <= 0x1000000 ? 3 : 4;
@@ -111,6 +114,7 @@ void LiveBuffers::begin(const ProgressiveMesh& mesh, std::uint32_t vertices, std
     known_.triangles = mesh.base_triangles;
     now_ = known_;
     dirty_ = {0, now_.vertices, 0, now_.triangles};
+    if (tracking_) vertex_runs_.mark(0, now_.vertices), triangle_runs_.mark(0, now_.triangles);
     checkpoints_.push_back({known_, ~0u, 0});
     append(mesh);
 }
@@ -256,7 +260,8 @@ std::size_t LiveBuffers::memory() const {
     std::size_t sum = sizeof(*this) + bytes(positions_) + bytes(triangles_) + bytes(weights_) +
                       bytes(attributes_) + bytes(groups_) + bytes(parents_) + bytes(codes_) +
                       bytes(corners_) + bytes(moved_positions_) + bytes(moved_weights_) + bytes(specials_) +
-                      bytes(special_corners_) + bytes(special_moves_) + bytes(checkpoints_) + bytes(errors_);
+                      bytes(special_corners_) + bytes(special_moves_) + bytes(checkpoints_) + bytes(errors_) +
+                      vertex_runs_.memory() + triangle_runs_.memory();
     for (const Values& values : attributes_) sum += bytes(values.alive) + bytes(values.moved);
     return sum;
 }
@@ -272,6 +277,11 @@ DirtyRanges LiveBuffers::take_dirty() {
     return dirty;
 }
 
+void LiveBuffers::take_dirty_runs(std::vector<ElementRange>& vertices, std::vector<ElementRange>& triangles) {
+    vertex_runs_.take(now_.vertices, vertices);
+    triangle_runs_.take(now_.triangles, triangles);
+}
+
 /// Triangles with corners changed in a range of splits: of whole intervals from the checkpoints.
 void LiveBuffers::mark_triangles(std::size_t from_level, const Ends& from, std::size_t to_level,
                                  const Ends& to) {
@@ -282,10 +292,11 @@ void LiveBuffers::mark_triangles(std::size_t from_level, const Ends& from, std::
             const std::uint32_t corner = corner_bytes_ == 3 ? load<3>(p) : load<4>(p);
             first = std::min(first, corner);
             last = std::max(last, corner);
+            if (tracking_) triangle_runs_.mark(corner / 3);
         }
     };
     const std::size_t a = (from_level + kInterval - 1) / kInterval, b = to_level / kInterval;
-    if (a >= b) {
+    if (a >= b || tracking_) {
         scan(from.corners, to.corners);
     } else {
         scan(from.corners, checkpoints_[a].ends.corners);
@@ -387,6 +398,8 @@ void LiveBuffers::exchange(std::span<const std::uint32_t> vertices, std::size_t 
         dirty_.vertices_begin = std::min(dirty_.vertices_begin, vertex);
         dirty_.vertices_end = std::max(dirty_.vertices_end, vertex + 1);
     }
+    if (tracking_)
+        for (const std::uint32_t vertex : vertices) vertex_runs_.mark(vertex);
 }
 
 /// Moves of the splits between level_ and `level`, in order or backward: their vertices are listed first, so
@@ -434,10 +447,12 @@ void LiveBuffers::refine(std::size_t splits) {
     if (to.vertices > now_.vertices) {
         dirty_.vertices_begin = std::min(dirty_.vertices_begin, now_.vertices);
         dirty_.vertices_end = std::max(dirty_.vertices_end, to.vertices);
+        if (tracking_) vertex_runs_.mark(now_.vertices, to.vertices);
     }
     if (to.triangles > now_.triangles) {
         dirty_.triangles_begin = std::min(dirty_.triangles_begin, now_.triangles);
         dirty_.triangles_end = std::max(dirty_.triangles_end, to.triangles);
+        if (tracking_) triangle_runs_.mark(now_.triangles, to.triangles);
     }
     level_ = level;
     now_ = to;

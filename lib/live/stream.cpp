@@ -236,7 +236,8 @@ std::vector<ByteRange> Stream::wants(std::uint64_t most_bytes, std::size_t ahead
                                      end - from, std::max<std::uint64_t>(most_bytes, kFirstRequest))});
         return out;
     }
-    const std::size_t until = std::min(s.blocks_for_target() + ahead, s.info->blocks.size());
+    const std::size_t until =
+        s.blocks_for_target() + std::min(ahead, s.info->blocks.size() - s.blocks_for_target());
     std::uint64_t left = most_bytes;
     for (std::size_t block = s.decoded + (s.lent ? 1 : 0); block < until && left > 0; ++block) {
         if (s.has(block)) continue;

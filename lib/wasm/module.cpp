@@ -1,17 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The vsplit authors
 // SPDX-License-Identifier: MIT
 //
-// What the WebAssembly module exports: one stream, its arrays as patches. A module is instantiated for each
-// stream, so that streams are independent and a closed one leaves no memory behind. stream.ts is the other
-// side of each function here.
+// What the WebAssembly module exports: one vsplit::Stream, its buffers as patches. A module is instantiated
+// for each stream, so that streams are independent and a closed one leaves no memory behind. stream.ts is the
+// other side of each function here. Offsets in the file are doubles: whole up to 2^53.
 #include <algorithm>
 #include <cstdlib>
-#include <memory>
+#include <limits>
 #include <optional>
 #include <string>
 
-#include "live_arrays.hpp"
-#include "vsplit/read.hpp"
+#include "patch.hpp"
+#include "vsplit/stream.hpp"
 
 #define VSPLIT_EXPORT extern "C" __attribute__((used, visibility("default")))
 
@@ -22,51 +22,35 @@ using namespace vsplit;
 // A group has an index of its own; a file may name any number.
 constexpr std::uint32_t kMostGroups = 4096;
 
-std::optional<BlockDecoder> decoder;
-std::unique_ptr<web::LiveArrays> arrays;
+std::optional<Stream> stream;
+std::optional<web::Patcher> patcher;
+bool makes_normals = true;
 Error failure;
-std::vector<std::uint32_t> ranges;
-std::vector<std::byte> data;
+std::vector<double> wanted;
+std::span<const std::byte> packed;
+std::span<const std::uint32_t> packed_ranges;
 
-/// -1, or the error's code.
+constexpr int kReached = 1, kWantsBytes = 2, kChanged = 4, kMore = 8;
+
 int fail(const Error& error) {
     failure = error;
     return static_cast<int>(error.code);
 }
 
-std::size_t level_of(int kind, double value) {
-    const ProgressiveMesh& mesh = decoder->mesh();
-    const double none = 0, most = 4294967295.0;
-    const auto count = static_cast<std::uint64_t>(std::clamp(value, none, most));
-    if (kind == 0) return level_for_triangles(mesh, count);
-    if (kind == 1) return level_for_vertices(mesh, count);
-    // While splits are missing, the error of the last level is the table's, not 0.
-    const auto found = std::find_if(mesh.splits.begin(), mesh.splits.end(),
-                                    [&](const Split& s) { return double(s.error) <= value; });
-    return static_cast<std::size_t>(found - mesh.splits.begin());
+/// -1, or the error's code.
+int status_of(const Status& status) {
+    return status ? -1 : fail(status.error());
 }
 
-void begin_pack() {
-    ranges.clear();
-    data.clear();
+std::uint64_t whole(double value, double most) {
+    return value > 0 ? static_cast<std::uint64_t>(std::min(value, most)) : 0;
 }
 
 template <class Value>
-void pack(const Value* values, std::size_t size, web::Changes& changes) {
-    changes.take(size, [&](std::size_t begin, std::size_t end) {
-        ranges.push_back(static_cast<std::uint32_t>(begin));
-        ranges.push_back(static_cast<std::uint32_t>(end - begin));
-        const auto* bytes = reinterpret_cast<const std::byte*>(values + begin);
-        data.insert(data.end(), bytes, bytes + (end - begin) * sizeof(Value));
-    });
-}
-
-std::size_t vertices() {
-    return vertices_at(decoder->mesh(), arrays->level());
-}
-
-void pack_vertices(web::VertexArray& array) {
-    pack(array.values.data(), array.components * vertices(), array.changes);
+std::uint32_t give(const web::Stretches<Value>& stretches) {
+    packed = std::as_bytes(std::span(stretches.values));
+    packed_ranges = stretches.ranges;
+    return static_cast<std::uint32_t>(packed.size());
 }
 
 }  // namespace
@@ -78,19 +62,34 @@ VSPLIT_EXPORT void vsplit_free(void* bytes) {
     std::free(bytes);
 }
 
-/// The front of the file, as much as there is. -1, or the error's code: kTruncated asks for more.
-VSPLIT_EXPORT int vsplit_begin(const std::byte* bytes, std::uint32_t size, double max_bytes, int normals) {
-    Limits limits;
-    // Half is the decoder's, half ours.
-    limits.max_bytes = static_cast<std::uint64_t>(std::clamp(max_bytes / 2, 0.0, 1.6e9));
-    auto began = BlockDecoder::begin({bytes, size}, limits);
-    if (!began) return fail(began.error());
-    if (began->info().largest_group >= kMostGroups)
-        return fail({ErrorCode::kLimit, "the mesh has more than " + std::to_string(kMostGroups) + " groups",
-                     Error::kNowhere, 0});
-    decoder.emplace(std::move(*began));
-    arrays = std::make_unique<web::LiveArrays>(decoder->info(), decoder->mesh(), normals != 0);
-    return -1;
+VSPLIT_EXPORT void vsplit_open(double max_bytes, int normals) {
+    StreamOptions options;
+    // Half is the decoder's, half that of the buffers.
+    options.limits.max_bytes = whole(max_bytes / 2, 1.6e9);
+    // How often a damaged block is fetched again, and past which caches, is the worker's to say.
+    options.tries = std::numeric_limits<int>::max();
+    // A server without ranges sends all of it, wanted or not, and would have to do so again.
+    options.max_pending_bytes = std::max(options.max_pending_bytes, options.limits.max_bytes / 4);
+    makes_normals = normals != 0;
+    stream.emplace(options);
+    stream->buffers().track_runs(true);
+}
+
+/// Bytes from anywhere in the file. -1, or the error's code; after kChecksum the bytes are wanted again.
+VSPLIT_EXPORT int vsplit_feed(double offset, const std::byte* bytes, std::uint32_t size) {
+    const Status status = stream->feed(whole(offset, 9e15), {bytes, size});
+    if (stream->ready() && !patcher) {
+        const FileInfo& info = *stream->info();
+        if (info.largest_group >= kMostGroups)
+            return fail({ErrorCode::kLimit,
+                         "the mesh has more than " + std::to_string(kMostGroups) + " groups", Error::kNowhere,
+                         0});
+        patcher.emplace(info.largest_group + 1, makes_normals);
+    }
+    return status_of(status);
+}
+VSPLIT_EXPORT int vsplit_set_file_size(double bytes) {
+    return status_of(stream->set_file_size(whole(bytes, 9e15)));
 }
 
 VSPLIT_EXPORT const char* vsplit_failure() {
@@ -100,8 +99,34 @@ VSPLIT_EXPORT double vsplit_failure_offset() {
     return failure.offset == Error::kNowhere ? -1 : static_cast<double>(failure.offset);
 }
 
+/// The kinds are those of Target::Kind.
+VSPLIT_EXPORT void vsplit_set_target(int kind, double value) {
+    stream->set_target({static_cast<Target::Kind>(std::clamp(kind, 0, 4)), value});
+}
+/// How many ranges are in vsplit_wanted(): offset and size of each.
+VSPLIT_EXPORT std::uint32_t vsplit_wants(double most_bytes, std::uint32_t ahead) {
+    wanted.clear();
+    for (const ByteRange& range : stream->wants(whole(most_bytes, 9e15), ahead)) {
+        wanted.push_back(static_cast<double>(range.offset));
+        wanted.push_back(static_cast<double>(range.size));
+    }
+    return static_cast<std::uint32_t>(wanted.size() / 2);
+}
+VSPLIT_EXPORT const double* vsplit_wanted() {
+    return wanted.data();
+}
+VSPLIT_EXPORT int vsplit_ready() {
+    return stream->ready() && patcher;
+}
+VSPLIT_EXPORT int vsplit_broken() {
+    return stream->broken();
+}
+VSPLIT_EXPORT double vsplit_received() {
+    return static_cast<double>(stream->bytes_received());
+}
+
 VSPLIT_EXPORT double vsplit_info(int what) {
-    const FileInfo& info = decoder->info();
+    const FileInfo& info = *stream->info();
     const Float3 &low = info.bounds_min, &high = info.bounds_max;
     const double values[] = {double(info.vertices),
                              double(info.triangles),
@@ -124,91 +149,69 @@ VSPLIT_EXPORT double vsplit_info(int what) {
     return values[what];
 }
 VSPLIT_EXPORT double vsplit_block(std::uint32_t block, int what) {
-    const BlockInfo& info = decoder->info().blocks[block];
+    const BlockInfo& info = stream->info()->blocks[block];
     const double values[] = {double(info.offset), double(info.bytes), double(info.vertices_end),
                              double(info.triangles_end), info.error};
     return values[what];
 }
 VSPLIT_EXPORT const char* vsplit_attribute_name(std::uint32_t attribute) {
-    return decoder->info().attributes[attribute].name.c_str();
+    return stream->info()->attributes[attribute].name.c_str();
 }
 VSPLIT_EXPORT std::uint32_t vsplit_attribute_components(std::uint32_t attribute) {
-    return decoder->info().attributes[attribute].components;
-}
-
-/// The stored bytes of the next block. -1, or the error's code; after kChecksum the same block may come
-/// again.
-VSPLIT_EXPORT int vsplit_decode(const std::byte* bytes, std::uint32_t size) {
-    const Status status = decoder->decode({bytes, size});
-    return status ? -1 : fail(status.error());
+    return stream->info()->attributes[attribute].components;
 }
 VSPLIT_EXPORT std::uint32_t vsplit_blocks() {
-    return static_cast<std::uint32_t>(decoder->blocks());
+    return static_cast<std::uint32_t>(stream->blocks_decoded());
 }
 
 VSPLIT_EXPORT void vsplit_set_scale(std::uint32_t group, float scale) {
-    arrays->set_scale(group, scale);
+    patcher->set_scale(group, scale);
 }
 
-/// Towards at most `value` triangles (kind 0), vertices (1), or an error of at most it (2), by at most `most`
-/// splits. 1 if that is not all, of what has arrived.
-VSPLIT_EXPORT int vsplit_advance(int kind, double value, std::uint32_t most) {
-    const std::size_t level = level_of(kind, value);
-    arrays->go_towards(level, most);
-    return arrays->level() != level;
+/// Decodes and refines or coarsens within these bounds: flags, or -2 less an error's code.
+VSPLIT_EXPORT int vsplit_update(std::uint32_t most_splits, std::uint32_t most_blocks) {
+    const std::size_t blocks = stream->blocks_decoded();
+    const Result<Updated> updated = stream->update({most_splits, most_blocks});
+    if (!updated) return -2 - fail(updated.error());
+    const bool worked = updated->splits > 0 || stream->blocks_decoded() > blocks;
+    return (updated->reached ? kReached : 0) | (updated->wants_bytes ? kWantsBytes : 0) |
+           (updated->splits > 0 ? kChanged : 0) | (worked && !updated->reached ? kMore : 0);
 }
 VSPLIT_EXPORT std::uint32_t vsplit_level_vertices() {
-    return static_cast<std::uint32_t>(vertices());
+    return stream->buffers().vertex_count();
 }
 VSPLIT_EXPORT std::uint32_t vsplit_level_triangles() {
-    return triangles_at(decoder->mesh(), arrays->level());
+    return stream->buffers().triangle_count();
 }
 VSPLIT_EXPORT double vsplit_level_error() {
-    const ProgressiveMesh& mesh = decoder->mesh();
-    if (arrays->level() < mesh.splits.size()) return double(mesh.splits[arrays->level()].error);
-    const std::size_t blocks = decoder->blocks();
-    return blocks > 0 ? double(decoder->info().blocks[blocks - 1].error) : double(decoder->info().base_error);
+    return double(stream->level_error());
 }
 
-/// What changed of an array since it was packed last: its bytes, in vsplit_data(). 0 positions, 1 weights, 2
-/// normals, 3 + i attribute i.
-VSPLIT_EXPORT std::uint32_t vsplit_pack_vertices(std::uint32_t array) {
-    begin_pack();
-    if (array == 0) {
-        pack_vertices(arrays->positions);
-        if (!arrays->scale_of_vertex.empty()) {
-            auto* value = reinterpret_cast<float*>(data.data());
-            for (std::size_t r = 0; r < ranges.size(); r += 2)
-                for (std::uint32_t i = 0; i < ranges[r + 1]; ++i)
-                    *value++ *= arrays->scale_of_vertex[(ranges[r] + i) / 3];
-        }
-    } else if (array == 1) {
-        pack_vertices(arrays->weights);
-    } else if (array == 2) {
-        arrays->update_normals();
-        ranges = {0, static_cast<std::uint32_t>(4 * vertices())};
-        const auto* bytes = reinterpret_cast<const std::byte*>(arrays->normals.data());
-        data.assign(bytes, bytes + 8 * vertices());
-    } else {
-        pack_vertices(arrays->attributes[array - 3]);
-    }
-    return static_cast<std::uint32_t>(data.size());
+/// Begins a patch: what changed since the one before. The others of this name belong to it.
+VSPLIT_EXPORT void vsplit_patch() {
+    patcher->take(stream->buffers());
 }
-VSPLIT_EXPORT std::uint32_t vsplit_pack_group(std::uint32_t group) {
-    begin_pack();
-    web::GroupIndex& index = arrays->groups[group];
-    pack(index.corners.data(), std::size_t{3} * index.triangles, index.changes);
-    return static_cast<std::uint32_t>(data.size());
+/// Bytes of an array's new contents, in vsplit_data(); where they go is in vsplit_ranges(). 0 positions, 1
+/// weights, 2 normals, 3 + i attribute i.
+VSPLIT_EXPORT std::uint32_t vsplit_patch_vertices(std::uint32_t array) {
+    const LiveBuffers& buffers = stream->buffers();
+    if (array == 0) return give(patcher->positions(buffers));
+    if (array == 1) return give(patcher->vertex_values(buffers.weights(), 1));
+    if (array == 2) return give(patcher->normals(buffers));
+    return give(patcher->vertex_values(buffers.attribute(array - 3), vsplit_attribute_components(array - 3)));
+}
+VSPLIT_EXPORT std::uint32_t vsplit_patch_group(std::uint32_t group) {
+    return give(patcher->group(group));
 }
 VSPLIT_EXPORT std::uint32_t vsplit_group_triangles(std::uint32_t group) {
-    return arrays->groups[group].triangles;
+    return patcher->group_triangles(group);
 }
 VSPLIT_EXPORT const std::byte* vsplit_data() {
-    return data.data();
+    return packed.data();
 }
 VSPLIT_EXPORT const std::uint32_t* vsplit_ranges() {
-    return ranges.data();
+    return packed_ranges.data();
 }
 VSPLIT_EXPORT std::uint32_t vsplit_range_count() {
-    return static_cast<std::uint32_t>(ranges.size());
+    return static_cast<std::uint32_t>(packed_ranges.size());
 }

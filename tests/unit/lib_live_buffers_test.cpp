@@ -92,8 +92,18 @@ struct Gpu {
         std::copy(from.begin() + std::ptrdiff_t(begin), from.begin() + std::ptrdiff_t(end),
                   to.begin() + std::ptrdiff_t(begin));
     }
-    void update(LiveBuffers& live) {
-        const DirtyRanges d = live.take_dirty();
+    void update(LiveBuffers& live) { send_all(live, live.take_dirty()); }
+    void update_by_runs(LiveBuffers& live) {
+        std::vector<ElementRange> vertices, triangles;
+        live.take_dirty_runs(vertices, triangles);
+        for (auto* ranges : {&vertices, &triangles})
+            for (std::size_t i = 0; i < ranges->size(); ++i)
+                within = within && (*ranges)[i].begin < (*ranges)[i].end &&
+                         (i == 0 || (*ranges)[i - 1].end < (*ranges)[i].begin);
+        for (const ElementRange& r : vertices) send_all(live, {r.begin, r.end, 0, 0});
+        for (const ElementRange& r : triangles) send_all(live, {0, 0, r.begin, r.end});
+    }
+    void send_all(const LiveBuffers& live, const DirtyRanges& d) {
         within = within && d.vertices_end <= live.vertex_count() && d.triangles_end <= live.triangle_count();
         if (!within) return;
         send(positions, live.positions(), d.vertices_begin, d.vertices_end);
@@ -128,6 +138,7 @@ void check(const ProgressiveMesh& mesh, std::uint32_t seed) {
     LiveMesh judge(mesh);
     LiveBuffers live;
     std::size_t known = splits == 0 ? 0 : random() % (splits + 1) / 4;
+    live.track_runs(true);
     begin(live, prefix(mesh, known), mesh);
     REQUIRE(live.level() == 0);
     REQUIRE(live.available() == known);
@@ -135,13 +146,15 @@ void check(const ProgressiveMesh& mesh, std::uint32_t seed) {
     const auto* const positions = live.positions().data();
     const auto* const triangles = live.triangles().data();
     const std::size_t memory = live.memory();
-    Gpu gpu;
+    Gpu gpu, finer;
     const auto compare = [&] {
         judge.go_to(live.level());
         gpu.update(live);
+        finer.update_by_runs(live);
         INFO("level " << live.level() << " of " << live.available());
         REQUIRE(same(live, judge));
         REQUIRE(gpu.holds(live));
+        REQUIRE(finer.holds(live));
         REQUIRE(live.positions().data() == positions);
         REQUIRE(live.triangles().data() == triangles);
     };
@@ -237,6 +250,34 @@ TEST_CASE("Live buffers: seams, returning components, larger meshes") {
     ProgressiveMesh weighted = large;
     weighted.weights = test::some_weights(weighted.positions.size());
     check(weighted, 10);
+}
+
+TEST_CASE("Dirty runs are a few elements where the hull is nearly all") {
+    const ProgressiveMesh mesh = naive_record(test::make_torus(60, 40), 8);
+    LiveBuffers live, plain;
+    live.track_runs(true);
+    begin(live, mesh, mesh);
+    begin(plain, mesh, mesh);
+    std::vector<ElementRange> vertices, triangles;
+    live.jump(mesh.splits.size() - 8);
+    live.take_dirty_runs(vertices, triangles);
+    REQUIRE(vertices == std::vector<ElementRange>{{0, live.vertex_count()}});
+    vertices.clear(), triangles.clear();
+    live.refine(8);
+    live.take_dirty_runs(vertices, triangles);
+    std::size_t sent = 0;
+    for (const ElementRange& range : triangles) sent += range.end - range.begin;
+    CHECK(sent >= 16);  // two born a split
+    CHECK(sent < 8 * 10 * DirtyRuns::kRun);
+    CHECK(sent < live.triangle_count() / 2);
+    vertices.clear(), triangles.clear();
+    live.take_dirty_runs(vertices, triangles);
+    CHECK(vertices.empty());
+    CHECK(triangles.empty());
+    plain.refine(8);
+    plain.take_dirty_runs(vertices, triangles);
+    CHECK(vertices.empty());
+    CHECK(triangles.empty());
 }
 
 TEST_CASE("Live buffers: endpoint records, where nothing moves") {

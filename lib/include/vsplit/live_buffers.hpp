@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "vsplit/dirty_runs.hpp"
 #include "vsplit/progressive_mesh.hpp"
 
 namespace vsplit {
@@ -82,7 +83,18 @@ class LiveBuffers {
     /// The same of all vertices of the levels known, alive or not.
     std::span<const std::uint32_t> all_parents() const { return std::span(parents_).first(known_.vertices); }
 
+    /// As groups(), of all triangles of the levels known, alive or not.
+    std::span<const std::uint32_t> all_groups() const { return groups_; }
+
     DirtyRanges take_dirty();
+
+    /// Keeps from the next begin() on, beside the hulls, which runs of vertices and triangles changed:
+    /// refining changes a few corners here and there, and a hull of them is nearly everything. Costs a look
+    /// at each corner changed, and a bit for every 16 elements.
+    void track_runs(bool on) { tracks_ = on; }
+    /// Those since the last call: appended, in order, apart from each other, within what is alive. Nothing
+    /// unless they are tracked.
+    void take_dirty_runs(std::vector<ElementRange>& vertices, std::vector<ElementRange>& triangles);
 
     /// Bytes allocated.
     std::size_t memory() const;
@@ -132,6 +144,9 @@ class LiveBuffers {
     std::size_t total_splits_ = 0;
     unsigned corner_bytes_ = 4;
     DirtyRanges dirty_{~0u, 0, ~0u, 0};
+    bool tracks_ = false;
+    DirtyRuns vertex_runs_, triangle_runs_;  ///< No room for any if they are not tracked.
+    bool tracking_ = false;                  ///< Since begin().
 
     std::vector<Float3> positions_;
     std::vector<Triangle> triangles_;

@@ -59,7 +59,7 @@ const sliderPixels = () => 0.25 * 2 ** (Number(input('pixels').value) / 15);
 const mode = () => (document.querySelector<HTMLInputElement>('input[name=mode]:checked')!).value;
 
 function target(): Target {
-    if (mode() === 'pixels' && model?.info) return { error: model.errorForPixels(sliderPixels(), camera, (canvas.clientWidth / camera.aspect) * renderer.getPixelRatio()) };
+    if (mode() === 'pixels' && model?.info) return { pixels: model.errorForPixels(sliderPixels(), camera, (canvas.clientWidth / camera.aspect) * renderer.getPixelRatio()) };
     return { ratio: sliderRatio() };
 }
 
@@ -71,7 +71,7 @@ function aim() {
     input('pixels-row').hidden = mode() !== 'pixels';
     const next = target();
     // A moving camera changes the wanted error all the time: a twentieth is not seen.
-    const key = 'error' in next ? `e${Math.round(20 * Math.log(Math.max(next.error, 1e-30)))}` : JSON.stringify(next);
+    const key = 'pixels' in next ? `p${Math.round(20 * Math.log(Math.max(next.pixels, 1e-30)))}` : JSON.stringify(next);
     if (!model || key === lastTarget) return;
     lastTarget = key;
     state.target = next;

@@ -3,4 +3,4 @@
 export { VsplitError, type VsplitErrorCode } from './errors.js';
 export type { ArrayPatch, AttributeInfo, Level, MeshPatch, OpenOptions, Progress, StreamInfo, Target } from './messages.js';
 export { VsplitSession, type SessionHandlers, type SessionOptions } from './session.js';
-export { compileVsplit, VsplitStream, type StreamOptions } from './stream.js';
+export { compileVsplit, VsplitStream, type Bounds, type ByteRange, type StreamOptions, type Updated } from './stream.js';

@@ -4,8 +4,12 @@
 // What the page and the worker say to each other.
 import type { VsplitErrorCode } from './errors.js';
 
-/** How fine the mesh is to be. An error is in the object's own units. */
-export type Target = { ratio: number } | { triangles: number } | { vertices: number } | { error: number };
+/**
+ * How fine the mesh is to be. Ratio, triangles and vertices: the finest level with at most so many. An error is in the object's own units: the
+ * coarsest level with at most that. `pixels` is one that spans so many on the screen (VsplitModel.errorForPixels()): the same, but small changes
+ * are not followed.
+ */
+export type Target = { ratio: number } | { triangles: number } | { vertices: number } | { error: number } | { pixels: number };
 
 export interface AttributeInfo {
     /** As in glTF: NORMAL, TEXCOORD_0, ... */

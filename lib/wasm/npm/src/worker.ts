@@ -12,6 +12,10 @@ const kFirstBytes = 32 * 1024;
 const kMostSceneBytes = 1024 * 1024 * 1024;
 const kPatchesOnTheirWay = 2;
 const kFetches = 3;
+/** Decoding in a row before messages are looked at, in milliseconds. */
+const kTurn = 25;
+/** While blocks are still to be decoded a patch waits for so many more triangles, or so many milliseconds. */
+const kGrowth = 1.3, kPatchEvery = 150;
 
 const post = (message: FromWorker, transfer: Transferable[] = []) => (self as unknown as { postMessage(m: unknown, t: Transferable[]): void }).postMessage(message, transfer);
 
@@ -23,10 +27,21 @@ class Session {
     private start = 0;
     private front = new Uint8Array(0);
     private onTheirWay = 0;
-    private patched = false;
+    private patched = 0;
+    private patchedTriangles = 0;
     private fetching?: AbortController;
     private wake?: () => void;
     private failed = false;
+    /** Of work beside the fetching; ends that. */
+    private fault?: unknown;
+    /** There is something to decode or to refine that has come. */
+    private busy = false;
+    /** The page knows what it is about. */
+    private opened = false;
+    private saidIdle = false;
+    private last?: VsplitError;
+    private readonly turn = new MessageChannel();
+    private turning = false;
     private damaged = { block: -1, times: 0 };
     private retry?: { attempt: number; reason: string };
     private lastProgress = 0;
@@ -34,23 +49,23 @@ class Session {
     constructor(source: string | Blob, private readonly wasm: string, private readonly options: OpenOptions, private target: Target) {
         this.settings = { ...readerDefaults, ...Object.fromEntries(Object.entries(options).filter(([, value]) => value !== undefined)) };
         this.settings.onRetry = (attempt, reason) => { this.retry = { attempt, reason }; this.progress(true); };
+        this.turn.port1.onmessage = () => { this.turning = false; this.pump(); };
         this.reader = typeof source === 'string' ? new HttpReader(source, this.settings) : new BlobReader(source, this.settings);
     }
 
     async run() {
-        for (let opened = false; ;) {
+        for (;;) {
             try {
-                if (!opened) {
-                    await this.open();
-                    opened = true;
-                }
+                if (!this.opened) await this.open();
                 await this.follow();
             } catch (error) {
+                const { opened } = this;
                 if (this.refetch(error, opened)) continue;
                 if (opened) this.progress(true);
                 const known = error instanceof VsplitError ? error : new VsplitError('malformed', String((error as Error)?.message ?? error));
                 post({ type: 'error', code: known.code, message: known.message, offset: known.offset === undefined ? undefined : known.offset + (opened ? this.start : 0) });
                 this.failed = true;
+                this.last = known;
                 if (!opened) this.front = new Uint8Array(0);
                 while (this.failed) await this.sleep();
             }
@@ -59,16 +74,17 @@ class Session {
 
     setTarget(target: Target) {
         this.target = target;
+        if (!this.stream) return;
+        this.stream.setTarget(target);
         // What is on its way for a finer target is not needed; without ranges it could not be had again.
-        if (this.stream?.info && this.ranges && this.start + this.stream.needed(target) <= this.position) this.fetching?.abort();
-        if (!this.failed) this.pump();
+        if (this.stream.info && this.ranges && !this.next()) this.fetching?.abort();
+        this.soon();
         this.wake?.();
     }
     setThrottle(bytesPerSecond: number) { this.settings.bytesPerSecond = bytesPerSecond; }
     taken() {
         this.onTheirWay--;
-        this.pump();
-        this.wake?.();
+        this.soon();
     }
     again() {
         this.failed = false;
@@ -78,6 +94,20 @@ class Session {
 
     private get ranges() { return !(this.reader instanceof HttpReader) || this.reader.ranges; }
     private get position() { return this.start + (this.stream?.fed ?? 0); }
+    /** The bytes to fetch next, in the file; nothing if the target needs none. */
+    private next(): { begin: number; end: number } | undefined {
+        const [first] = this.stream.wants();
+        if (!first) return undefined;
+        const begin = this.start + first.offset;
+        if (!this.stream.info) return { begin, end: begin + Math.max(first.size, kFirstBytes) };
+        return { begin, end: this.ranges ? begin + first.size : this.start + this.stream.info.bytes };
+    }
+    /** Lets messages through first. */
+    private soon() {
+        if (this.turning) return;
+        this.turning = true;
+        this.turn.port2.postMessage(0);
+    }
     private sleep() { return new Promise<void>((resolve) => { this.wake = () => { this.wake = undefined; resolve(); }; }); }
 
     /** Up to the point where the stream begins. */
@@ -85,7 +115,6 @@ class Session {
         const module = compileVsplit(this.wasm);
         module.catch(() => {});
         await this.readFront(kFirstBytes);
-        const whole = () => this.reader.size !== undefined && this.front.length >= this.reader.size;
         if (this.front.length === 0) throw new VsplitError('not-a-model', 'The file is empty.');
         if (isGlb(this.front)) {
             if (this.front.length < 20) throw new VsplitError('truncated', 'The GLB ends within its header.', this.front.length);
@@ -95,15 +124,11 @@ class Session {
             await this.frontOf(glb.streamOffset, 'the scene before the stream');
             this.start = glb.streamOffset;
             post({ type: 'scene', bytes: this.front.slice(0, glb.streamOffset) });
-            this.stream = new VsplitStream(await module, this.options);
-            this.feedFront(glb.streamOffset, whole());
-            await this.untilInfo();
+            await this.begin(module, glb.streamOffset);
             for (const mesh of glb.extension.meshes)
                 for (const primitive of mesh.primitives) this.stream.setScale(primitive.group, 2 ** -mesh.exponent);
         } else if (isPmesh(this.front)) {
-            this.stream = new VsplitStream(await module, this.options);
-            this.feedFront(0, whole());
-            await this.untilInfo();
+            await this.begin(module, 0);
         } else {
             const text = new TextDecoder().decode(this.front.subarray(0, 512)).trimStart();
             throw new VsplitError('not-a-model', /^<(!doctype|html|\?xml)/i.test(text)
@@ -112,6 +137,7 @@ class Session {
         }
         this.front = new Uint8Array(0);
         post({ type: 'info', info: this.stream.info! });
+        this.opened = true;
         this.progress(true);
     }
 
@@ -132,61 +158,67 @@ class Session {
         if (this.front.length < bytes) await this.readFront(bytes);
         if (this.front.length < bytes) throw new VsplitError('truncated', `The file ends within ${what}.`, this.front.length);
     }
-    private async untilInfo() {
-        while (!this.stream.info) {
-            const before = this.position;
-            await this.fetchTo(before + kFirstBytes);
-            if (!this.stream.info && this.position < before + kFirstBytes) {
-                this.stream.feed(new Uint8Array(0), true);
-                if (!this.stream.info) throw new VsplitError('truncated', 'The file ends before its base mesh is complete.', this.position);
-            }
+    /** `at` is where in the front the stream begins. */
+    private async begin(module: Promise<WebAssembly.Module>, at: number) {
+        this.stream = new VsplitStream(await module, this.options);
+        this.stream.setTarget(this.target);
+        try {
+            this.stream.feed(0, this.front.subarray(at));
+        } catch (error) {
+            // What is behind the front may be damaged: that is fetched again once all is set up.
+            if (!this.stream.info || !this.refetch(error, true)) throw error;
+        }
+        for (let next = this.next(); !this.stream.info && next; next = this.next()) {
+            const ended = await this.fetch(next.begin, next.end);
+            if (ended !== undefined) this.stream.end(ended - this.start);
         }
     }
 
     /** Follows the target, for ever. */
     private async follow() {
+        this.soon();
         for (;;) {
-            this.pump();
-            const { info } = this.stream;
-            const end = this.start + (this.ranges ? this.stream.needed(this.target) : info!.bytes);
-            if (this.position >= end) {
+            if (this.fault) {
+                const { fault } = this;
+                this.fault = undefined;
+                throw fault;
+            }
+            const next = this.next();
+            if (!next) {
+                if (this.stream.broken && this.last) throw this.last;
                 this.progress(true);
                 await this.sleep();
                 continue;
             }
-            await this.fetchTo(end);
-            // Fewer bytes than that, and nobody stopped it.
-            if (this.position < end && !this.fetching!.signal.aborted)
-                throw new VsplitError('truncated', `The file ends after ${this.position} bytes, but announces ${this.start + info!.bytes}.`, this.position - this.start);
+            const ended = await this.fetch(next.begin, next.end);
+            const announced = this.start + this.stream.info!.bytes;
+            if (ended !== undefined && ended < announced)
+                throw new VsplitError('truncated', `The file ends after ${ended} bytes, but announces ${announced}.`, ended - this.start);
         }
     }
 
-    private async fetchTo(end: number) {
+    /** Feeds these bytes, as long as they are wanted. Where the file ended, if it did. */
+    private async fetch(begin: number, end: number): Promise<number | undefined> {
         this.fetching = new AbortController();
-        // What is held of a block that is not whole has been fed, and is not fetched again.
-        await this.reader.read(this.position, end, (part) => {
+        const { signal } = this.fetching;
+        let at = begin, enough = false;
+        await this.reader.read(begin, end, (part) => {
             this.retry = undefined;
-            this.stream.feed(part);
-            this.pump();
+            at += part.length;
+            this.stream.feed(at - part.length - this.start, part);
+            this.soon();
             this.progress();
             // A target that moved nearer: the block that is on its way is still taken.
-            return !(this.ranges && this.stream.info && this.position >= this.start + this.stream.needed(this.target)) || !this.stream.info;
-        }, this.fetching.signal, this.damaged.times > 0);
-    }
-
-    /** What is behind the front may be damaged: that is fetched again once all is set up. */
-    private feedFront(from: number, last: boolean) {
-        try {
-            this.stream.feed(this.front.subarray(from), last);
-        } catch (error) {
-            if (!this.stream.info || !this.refetch(error, true)) throw error;
-        }
+            if (this.stream.info && this.ranges) enough = this.next()?.begin !== at;
+            return !enough && !this.fault;
+        }, signal, this.damaged.times > 0);
+        return at < end && !enough && !signal.aborted && !this.fault ? at : undefined;
     }
 
     /** What came damaged is fetched again, past the caches, before anybody hears of it. */
     private refetch(error: unknown, opened: boolean): boolean {
         if (!(error instanceof VsplitError) || error.code !== 'checksum') return false;
-        const block = opened ? this.stream.blocks : -1;
+        const block = opened ? this.stream.info!.blocks.findIndex((b) => b.end > (error.offset ?? 0)) : -1;
         this.damaged = { block, times: this.damaged.block === block ? this.damaged.times + 1 : 1 };
         if (!opened) this.front = new Uint8Array(0);
         if (this.damaged.times < kFetches) return true;
@@ -196,19 +228,40 @@ class Session {
         return false;
     }
 
-    /** Refines by a bounded amount and posts it, if the page keeps up. */
+    /** Decodes for a while, refines by a bounded amount and posts that, if the page keeps up; and again, if there is more to do. */
     private pump() {
-        while (this.stream?.info && this.onTheirWay < kPatchesOnTheirWay) {
-            const before = this.patched ? this.stream.level.triangles : -1;
-            const more = this.stream.advance(this.target, this.options.splitsPerPatch ?? 128 * 1024);
-            if (this.stream.level.triangles === before && !more) return;
-            const patch: MeshPatch = this.stream.patch();
-            this.patched = true;
-            this.onTheirWay++;
-            post({ type: 'patch', patch }, patch.arrays.flatMap((a) => [a.ranges.buffer, a.data.buffer]) as Transferable[]);
-            if (!more) return;
+        if (!this.opened || this.failed || this.fault) return;
+        try {
+            const began = performance.now();
+            let decoding = true;
+            while (decoding && performance.now() - began < kTurn) decoding = this.stream.update({ maxSplits: 0, maxBlocks: 1 }).more;
+            let refining = false;
+            const ripe = !decoding || began - this.patched > kPatchEvery || this.stream.availableTriangles > kGrowth * this.patchedTriangles;
+            if (ripe && this.onTheirWay < kPatchesOnTheirWay) {
+                const { changed, more } = this.stream.update({ maxSplits: this.options.splitsPerPatch ?? 128 * 1024, maxBlocks: 0 });
+                refining = more;
+                if (changed || this.patched === 0) this.send();
+            }
+            // Once the page has taken a patch there is another turn.
+            this.busy = decoding || refining || this.onTheirWay >= kPatchesOnTheirWay;
+            if (decoding || refining) this.soon();
+            if (this.idle !== this.saidIdle) this.progress(true);
+        } catch (error) {
+            this.fault = error;
+            this.fetching?.abort();
+            this.wake?.();
         }
     }
+
+    private send() {
+        const patch: MeshPatch = this.stream.patch();
+        this.patched = performance.now();
+        this.patchedTriangles = patch.level.triangles;
+        this.onTheirWay++;
+        post({ type: 'patch', patch }, patch.arrays.flatMap((a) => [a.ranges.buffer, a.data.buffer]) as Transferable[]);
+    }
+
+    private get idle() { return this.opened && !this.next() && !this.busy && !this.turning; }
 
     private progress(now = false) {
         const time = performance.now();
@@ -221,7 +274,7 @@ class Session {
             progress: {
                 received: this.reader.received, fed: stream ? this.position : this.front.length, needed,
                 fileBytes: stream?.info ? this.start + stream.info.bytes : this.reader.size,
-                availableTriangles: stream?.availableTriangles ?? 0, ranges: this.ranges, idle: stream?.info !== undefined && this.position >= needed, retry: this.retry,
+                availableTriangles: stream?.availableTriangles ?? 0, ranges: this.ranges, idle: this.saidIdle = this.idle, retry: this.retry,
             },
         });
     }
