@@ -63,7 +63,7 @@ Result<CollapseResult> collapse(const Mesh& mesh, const CollapseOptions& options
     if (put_off || options.calibrate) {
         std::vector<float> deviations = measure_collapses(result.mesh, progress);
         if (deviations.size() != result.mesh.splits.size()) return cancelled;
-        if (put_off) put_off_outliers(result.mesh, deviations);
+        if (put_off) put_off_outliers(result.mesh, deviations, options.placement == Placement::kEndpoint);
         if (options.calibrate && !bound_errors(result.mesh, deviations, progress)) return cancelled;
     }
     result.report.calibrate_cpu_seconds = cpu_seconds() - start;

@@ -86,7 +86,7 @@ std::uint32_t CutModel::weigh_rows(std::uint32_t begins, std::uint32_t longest, 
     return total;
 }
 
-std::uint32_t CutModel::weigh(const Star& star, const Cut& wings, std::size_t family) {
+std::uint32_t CutModel::weigh(const Star& star, const Cut& wings, std::size_t family, std::uint32_t locked) {
     const std::uint32_t n = star.size, ring = star.ring_size();
     std::array<std::int32_t, Star::kLargestFan + 1> wing, child;
     std::int32_t most_wing = INT32_MIN, most_child = INT32_MIN;
@@ -113,23 +113,26 @@ std::uint32_t CutModel::weigh(const Star& star, const Cut& wings, std::size_t fa
     }
     for (std::uint32_t l = shortest; l <= longest; ++l) length_[l] = share(most - length[l]);
 
+    for (std::uint32_t i = 0; i < n; ++i) {
+        const bool may = star.ring[i] < locked && star.ring_at(i + 1) < locked;
+        open_[i] = open_[i + round] = may ? 0xFFFF : 0;
+    }
+    if (!star.closed) std::fill(open_.begin() + n, open_.end(), std::uint16_t{0});
+
     const int shift = n <= 8 ? 0 : n <= 16 ? 2 : 4;
     if (family == 2) {
         std::uint32_t total = 0;
-        std::uint16_t run = 65535;
+        std::uint16_t run = 65535, may = 0xFFFF;
         for (std::uint32_t l = 0; l <= longest; ++l) {
             const std::uint32_t end = wings.last_wing ? l : n - l;  // of the wing
             const std::uint16_t weight = product(product(run, wing_[end]), length_[l]);
-            weights_[l][0] = static_cast<std::uint16_t>((weight >> shift) + 1);
+            weights_[l][0] = static_cast<std::uint16_t>(((weight >> shift) + 1) & may);
             total += sums_[l] = weights_[l][0];
             run = product(run, child_[end]);
+            if (l < n) may &= open_[wings.last_wing ? l : n - 1 - l];
         }
         return total;
     }
-    const std::uint32_t sectors = star.closed ? 2 * n : n;
-    std::fill_n(open_.begin(), sectors, std::uint16_t{0xFFFF});
-    std::fill_n(open_.begin() + sectors, 8, std::uint16_t{0});
-    if (!star.closed) std::fill(open_.begin() + n, open_.end(), std::uint16_t{0});
     return n <= 8    ? weigh_rows<1>(n, longest, shift)
            : n <= 16 ? weigh_rows<2>(n, longest, shift)
                      : weigh_rows<4>(n, longest, shift);

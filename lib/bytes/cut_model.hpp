@@ -42,8 +42,10 @@ class CutModel {
     /// In a closed fan every run of 1 to size - 1 sectors, both wings. In an open one runs of 1 and more with
     /// both wings; or a run from the first sector on, none to all, with the last wing alone; or one up to the
     /// last sector with the first wing alone.
+    /// Sectors that have a corner from `locked` on are no part of any. False if no run is left.
     template <class Coder>
-    Cut code(Coder& coder, const LiveStars& mesh, const Star& star, const Cut& cut);
+    bool code(Coder& coder, const LiveStars& mesh, const Star& star, std::uint32_t locked, const Cut& cut,
+              Cut& out);
 
   private:
     static constexpr std::uint16_t kMostSeen = 1000;
@@ -73,7 +75,7 @@ class CutModel {
 
     void classify(const LiveStars& mesh, const Star& star);
     /// Fills weights_ and sums_ for all runs of this family (closed, both wings, one wing); their sum.
-    std::uint32_t weigh(const Star& star, const Cut& wings, std::size_t family);
+    std::uint32_t weigh(const Star& star, const Cut& wings, std::size_t family, std::uint32_t locked);
     template <std::uint32_t kBlocks>
     std::uint32_t weigh_rows(std::uint32_t begins, std::uint32_t longest, int shift);
     void learn(const Star& star, const Cut& cut);
@@ -94,8 +96,9 @@ class CutModel {
 };
 
 template <class Coder>
-Cut CutModel::code(Coder& coder, const LiveStars& mesh, const Star& star, const Cut& cut) {
-    Cut out;
+bool CutModel::code(Coder& coder, const LiveStars& mesh, const Star& star, std::uint32_t locked,
+                    const Cut& cut, Cut& out) {
+    out = {};
     if (!star.closed) {
         const bool both =
             coder.bit(both_[std::min<std::uint32_t>(star.size, 7)], cut.first_wing && cut.last_wing);
@@ -106,7 +109,8 @@ Cut CutModel::code(Coder& coder, const LiveStars& mesh, const Star& star, const 
     }
     classify(mesh, star);
     const std::size_t family = star.closed ? 0 : out.first_wing && out.last_wing ? 1 : 2;
-    const std::uint32_t sum = weigh(star, out, family);
+    const std::uint32_t sum = weigh(star, out, family, locked);
+    if (sum == 0) return false;
     std::uint32_t lane = 0, before = 0;
     if constexpr (Coder::kDecodes) {
         std::uint32_t at = coder.point(sum);
@@ -126,7 +130,7 @@ Cut CutModel::code(Coder& coder, const LiveStars& mesh, const Star& star, const 
     }
     coder.take(before, weights_[out.length][lane], sum);
     learn(star, out);
-    return out;
+    return true;
 }
 
 }  // namespace vsplit

@@ -126,22 +126,42 @@ VSPLIT_INLINE void PlaceModel::measure(const Around& around, std::uint32_t count
     g.across = c;
     for (std::size_t a = 0; a < 3; ++a)
         g.spread[a] = static_cast<std::uint32_t>((spread[a] / 4 * kReciprocals[count]) >> 16);
-    g.roughness = 0;
-    if (g.normal[c] == 0) return;
-    // Distances of the polygon's corners, and of the point predicted, from the plane through their middle.
+    // How one axis follows the other, and distances of the polygon's corners, and of the point predicted,
+    // from the plane through their middle.
     const auto height = [&](std::int64_t x, std::int64_t y, std::int64_t z) {
         return x * g.normal[0] + y * g.normal[1] + z * g.normal[2];
     };
     const std::int64_t middle =
         height(mean16(centre[0], count), mean16(centre[1], count), mean16(centre[2], count));
-    std::int64_t sum = 0;
     const std::int64_t mx = g.normal[0], my = g.normal[1], mz = g.normal[2];
+    const std::size_t first = c == 0 ? 1 : 0, second = c == 2 ? 1 : 2;
+    std::int64_t sum = 0, squares = 0, products = 0;
     for (std::uint32_t i = 0; i < count; ++i) {
-        const std::int64_t x = around.offset[i][0], y = around.offset[i][1], z = around.offset[i][2];
+        const auto& d = around.offset[i];
+        const std::int64_t x = d[0], y = d[1], z = d[2];
         sum += std::abs(16 * (x * mx + y * my + z * mz) - middle) >> 4;
+        squares += std::int64_t{d[first]} * d[first];
+        products += std::int64_t{d[first]} * d[second];
     }
+    squares = count * squares - centre[first] * centre[first];
+    products = count * products - centre[first] * centre[second];
+    g.lean = 0;
+    if (squares > 0) {
+        const int over =
+            std::max(0, static_cast<int>(std::bit_width(static_cast<std::uint64_t>(squares))) - 50);
+        squares >>= over;
+        products >>= over;
+        const std::int64_t most = 4 * squares;
+        g.lean = static_cast<std::int32_t>(768 * std::clamp(products, -most, most) / squares);
+    }
+    g.roughness = 0;
+    if (g.normal[c] == 0) return;
     const std::int64_t mean = (sum >> 8) * kReciprocals[count] >> 8;
-    const std::int64_t predicted = std::abs(height(g.beyond[0], g.beyond[1], g.beyond[2]) - middle) >> 4;
+    const std::int64_t over = height(g.beyond[0], g.beyond[1], g.beyond[2]) - middle,
+                       predicted = std::abs(over) >> 4;
+    g.rise = static_cast<std::int32_t>(half_octave(static_cast<std::uint64_t>(4 * predicted))) -
+             static_cast<std::int32_t>(half_octave(static_cast<std::uint64_t>(std::abs(g.normal[c]))));
+    g.sinks = (over < 0) != (g.normal[c] < 0);
     g.roughness = static_cast<std::uint32_t>(
         std::min<std::int64_t>(4 * (mean + predicted / 2) / std::abs(g.normal[c]), 1 << 26));
 }

@@ -107,7 +107,10 @@ template <class Coder>
 const char* SplitCodec::code_plain(Coder& coder, std::uint32_t primary, const Cut& cut,
                                    const SplitPlan& wanted, SplitPlan& out) {
     is_run_ = true;
-    run_ = Coder::kWrites || Coder::kDecodes ? cut_.code(coder, live, star_, cut) : cut;
+    if (!Coder::kWrites && !Coder::kDecodes)
+        run_ = cut;
+    else if (!cut_.code(coder, live, star_, is_batch() ? older_ : kNoVertex, cut, run_))
+        return "a run has no place in its fan";
     SplitPlan::Birth& birth = out.births.emplace_back();
     birth.parent = primary;
     take_run(live.vertex_count(), out);
@@ -140,14 +143,20 @@ void SplitCodec::apply_plain(const SplitPlan& plan) {
     values.insert(values.end(), plan.birth_values.begin(), plan.birth_values.end());
     if (shape_.lossless) finer.push_back(birth.finer);
     if (shape_.group_bits > 0) groups.insert(groups.end(), plan.groups.begin(), plan.groups.end());
-    for (std::uint32_t i = 0; i < star_.ring_size(); ++i) {
-        live.vertices[star_.ring[i]].touched = sweep_;
-        asks_.add(star_.ring[i]);
+    for (std::uint32_t i = 0; i < star_.ring_size(); ++i) touch(star_.ring[i]);
+    touch(p).acted = sweep_;
+    touch(child).acted = sweep_;
+    if (!is_batch()) return;
+    // What the batch has changed for good: the run, and the wings. Inside the run, two of them at each
+    // vertex.
+    const std::uint32_t n = star_.size, end = run_.begin + run_.length;
+    for (std::uint32_t i = run_.begin; i <= end; ++i) {
+        LiveVertex& here = live.vertices[star_.ring[star_.closed && i >= n ? i - n : i]];
+        here.locked += std::uint32_t{i > run_.begin} + std::uint32_t{i < end} +
+                       std::uint32_t{run_.first_wing && i == run_.begin} +
+                       std::uint32_t{run_.last_wing && i == end};
     }
-    LiveVertex &parent = live.vertices[p], &born = live.vertices[child];
-    born.acted = born.touched = parent.acted = parent.touched = sweep_;
-    asks_.add(p);
-    asks_.add(child);
+    live.vertices[p].locked += std::uint32_t{run_.first_wing} + std::uint32_t{run_.last_wing};
 }
 
 template const char* SplitCodec::code_plain(RangeEncoder&, std::uint32_t, const Cut&, const SplitPlan&,

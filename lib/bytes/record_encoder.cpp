@@ -273,11 +273,12 @@ void RecordEncoder::fetch(const Sweep& sweep, std::size_t step) const {
 }
 
 template <class Coder>
-void RecordEncoder::code_splits(Coder& coder, const std::function<void(const SplitPlan&, float)>& done) {
+void RecordEncoder::code_splits(Coder& coder,
+                                const std::function<void(const SplitPlan&, float, bool)>& done) {
     for (const Sweep& sweep : sweeps_) {
         const auto marked = std::count_if(sweep.steps.begin(), sweep.steps.end(),
                                           [](const Sweep::Step& step) { return step.primary != kNoVertex; });
-        SweepHead head{static_cast<std::uint32_t>(marked),
+        SweepHead head{sweep.kind, static_cast<std::uint32_t>(marked),
                        static_cast<std::uint32_t>(sweep.steps.size()) - static_cast<std::uint32_t>(marked),
                        std::bit_cast<std::uint32_t>(sweep.error)};
         const char* fault = codec_.code_head(coder, head);
@@ -291,7 +292,7 @@ void RecordEncoder::code_splits(Coder& coder, const std::function<void(const Spl
             if (!fault) fault = codec_.code_split(coder, primary, wanted_, coded_);
             codec_.apply(coded_);
             learn_numbers(wanted_, coded_);
-            done(coded_, sweep.error);
+            done(coded_, sweep.error, &step == &sweep.steps.back());
         }
         assert(!fault);
         static_cast<void>(fault);
@@ -300,7 +301,8 @@ void RecordEncoder::code_splits(Coder& coder, const std::function<void(const Spl
 
 template void RecordEncoder::code_base(RangeEncoder&);
 template void RecordEncoder::code_base(NoCoder&);
-template void RecordEncoder::code_splits(RangeEncoder&, const std::function<void(const SplitPlan&, float)>&);
-template void RecordEncoder::code_splits(NoCoder&, const std::function<void(const SplitPlan&, float)>&);
+template void RecordEncoder::code_splits(RangeEncoder&,
+                                         const std::function<void(const SplitPlan&, float, bool)>&);
+template void RecordEncoder::code_splits(NoCoder&, const std::function<void(const SplitPlan&, float, bool)>&);
 
 }  // namespace vsplit

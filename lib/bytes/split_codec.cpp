@@ -32,6 +32,9 @@ SplitCodec::SplitCodec(const StreamShape& shape, const PlaceWeights& weights)
 
 template <class Coder>
 const char* SplitCodec::code_head(Coder& coder, SweepHead& head) {
+    const std::uint32_t kind = kinds_.code(coder, static_cast<std::uint32_t>(head.kind));
+    if (kind > static_cast<std::uint32_t>(SweepKind::kBatchAll)) return "a sweep is of no known kind";
+    head.kind = kind_ = static_cast<SweepKind>(kind);
     head.marked = marked_.code(coder, head.marked);
     head.unmarked = unmarked_.code(coder, head.unmarked);
     const std::uint32_t fall = error_.code(coder, error_bits_ - head.error_bits);
@@ -41,7 +44,8 @@ const char* SplitCodec::code_head(Coder& coder, SweepHead& head) {
     if (head.marked == 0 && head.unmarked == 0) return "a sweep is empty";
     ++sweep_;
     cursor_ = 0;
-    asks_.begin(alive);
+    older_ = alive;
+    if (!is_batch()) asks_.begin(alive);
     sparse_ = std::uint64_t{head.marked} * 64 < alive;
     return nullptr;
 }
@@ -64,6 +68,22 @@ bool SplitCodec::ask(Coder& coder, std::uint32_t v, bool splits) {
 }
 
 template <class Coder>
+bool SplitCodec::ask_batch(Coder& coder, std::uint32_t v, bool splits) {
+    const LiveVertex& vertex = live.vertices[v];
+    const Lattice3 bump = live.bump(v);
+    std::uint64_t squared = 1;
+    for (const std::int32_t b : bump) squared += static_cast<std::uint64_t>(std::int64_t{b} * b);
+    const std::int32_t size = log2_fixed(squared);
+    const std::size_t valence = std::clamp<std::uint32_t>(vertex.star, 3, 12) - 3;
+    const std::size_t locked = std::min(vertex.star - unlocked(vertex), 6u);
+    const std::size_t acted = std::min(sweep_ - vertex.acted, 2u);
+    const auto bumpy = static_cast<std::size_t>(std::clamp((size - split_size_ + 6 * 256) >> 8, 0, 9));
+    const bool answer = coder.bit(batch_mark_[((valence * 7 + locked) * 3 + acted) * 10 + bumpy], splits);
+    if (answer) split_size_ += (size - split_size_) >> 5;
+    return answer;
+}
+
+template <class Coder>
 const char* SplitCodec::code_mark(Coder& coder, std::uint32_t& primary) {
     if (!Coder::kWrites && !Coder::kDecodes) return nullptr;
     if (sparse_) {
@@ -75,15 +95,24 @@ const char* SplitCodec::code_mark(Coder& coder, std::uint32_t& primary) {
         cursor_ = primary;
         return nullptr;
     }
+    if (is_batch()) {
+        for (; cursor_ < older_; ++cursor_) {
+            if (kind_ == SweepKind::kBatch && unlocked(live.vertices[cursor_]) == 0) continue;
+            if (cursor_ + 8 < older_) live.fetch(cursor_ + 8, 0);
+            if (cursor_ + 4 < older_) live.fetch(cursor_ + 4, 1);
+            if (!ask_batch(coder, cursor_, cursor_ == primary)) continue;
+            primary = cursor_;
+            return nullptr;
+        }
+        return "a sweep marks fewer vertices than it announces";
+    }
     for (std::uint32_t v; (v = asks_.next()) != kNoVertex;) {
-        // What the next in line need comes from memory meanwhile: the list of the seventh, the triangles of
-        // the fourth, the ring of the second.
+        // What the next in line need comes from memory meanwhile: the list of the seventh, the ring of the
+        // fourth.
         std::uint64_t line = asks_.after(v);
         for (int i = 1; line != 0 && i <= 7; ++i, line &= line - 1)
-            if (i == 2 || i == 4 || i == 7)
-                live.fetch(v + 1 + static_cast<std::uint32_t>(std::countr_zero(line)), i == 2   ? 2
-                                                                                       : i == 4 ? 1
-                                                                                                : 0);
+            if (i == 4 || i == 7)
+                live.fetch(v + 1 + static_cast<std::uint32_t>(std::countr_zero(line)), i == 4 ? 1 : 0);
         if (ask(coder, v, v == primary)) {
             primary = v;
             return nullptr;
@@ -141,6 +170,8 @@ const char* SplitCodec::code_birth(Coder& coder, std::uint32_t primary, std::siz
     out.births.emplace_back();
     if (const char* fault = code_parent(coder, primary, wanted, index, out)) return fault;
     const std::uint32_t parent = out.births[index].parent;
+    if (Coder::kDecodes && is_batch() && parent != kNoVertex && parent >= older_)
+        return "a batch splits a vertex that it bore";
     is_run_ = false;
     bool moves = false;
     std::size_t move = 0;
@@ -221,7 +252,12 @@ const char* SplitCodec::code_taken(Coder& coder, const SplitPlan& wanted, std::s
         is_run_ = coder.bit(regular_[star_.closed],
                             !Coder::kDecodes && find_cut(taken, wanted, birth_id(index), cut));
         if (is_run_) {
-            run_ = Coder::kWrites || Coder::kDecodes ? cut_.code(coder, live, star_, cut) : cut;
+            if (Coder::kWrites || Coder::kDecodes) {
+                if (!cut_.code(coder, live, star_, is_batch() ? older_ : kNoVertex, cut, run_))
+                    return "a run has no place in its fan";
+            } else {
+                run_ = cut;
+            }
             take_run(birth_id(index), out);
             return Coder::kDecodes && out.taken.size() > room.corners
                        ? "a block changes more corners than it announces"
@@ -236,6 +272,8 @@ const char* SplitCodec::code_taken(Coder& coder, const SplitPlan& wanted, std::s
         if (star_.size > 64 ? coder.raw(1, is_taken) != 0 : coder.bit(in_mask_, is_taken)) {
             if (Coder::kDecodes && out.taken.size() >= room.corners)
                 return "a block changes more corners than it announces";
+            if (Coder::kDecodes && is_batch() && is_locked(live.triangles[corner / 3]))
+                return "a batch changes a triangle twice";
             out.taken.push_back(corner);
         }
     }

@@ -16,6 +16,7 @@
 #include "live_stars.hpp"
 #include "number_models.hpp"
 #include "place_model.hpp"
+#include "schedule.hpp"
 
 namespace vsplit {
 
@@ -66,6 +67,7 @@ struct StreamShape {
 /// The beginning of a sweep: every vertex in turn, those just born too, is asked whether it splits, and again
 /// after it did.
 struct SweepHead {
+    SweepKind kind = SweepKind::kRounds;
     std::uint32_t marked = 0;    ///< Splits found by their first parent, in its order.
     std::uint32_t unmarked = 0;  ///< Splits without parents, after them.
     std::uint32_t error_bits = 0;
@@ -155,6 +157,24 @@ class SplitCodec {
     bool looks_at() const {
         return Coder::kWrites || Coder::kDecodes || fits_ == 0;
     }
+    /// Of a batch.
+    template <class Coder>
+    bool ask_batch(Coder& coder, std::uint32_t v, bool splits);
+    bool is_batch() const { return kind_ != SweepKind::kRounds; }
+    /// Triangles of the star that a batch has not changed.
+    std::uint32_t unlocked(const LiveVertex& v) const {
+        return v.star - (v.touched == sweep_ ? v.locked : 0);
+    }
+    /// A triangle that the batch has changed has a corner that it bore.
+    bool is_locked(const Triangle& t) const { return t[0] >= older_ || t[1] >= older_ || t[2] >= older_; }
+    /// A vertex whose star changes: it is to be asked again, or has no triangle locked yet.
+    LiveVertex& touch(std::uint32_t v) {
+        LiveVertex& vertex = live.vertices[v];
+        if (vertex.touched != sweep_) vertex.locked = 0;
+        vertex.touched = sweep_;
+        if (!is_batch()) asks_.add(v);
+        return vertex;
+    }
     /// The run that a set of corners is, if it is one that CutModel codes.
     bool find_cut(std::span<const std::uint32_t> taken, const SplitPlan& wanted, std::uint32_t child,
                   Cut& cut) const;
@@ -169,6 +189,8 @@ class SplitCodec {
     void apply_plain(const SplitPlan& plan);
     template <class Coder>
     void code_implied(Coder& coder, const SplitPlan& wanted, SplitPlan& out);
+    /// Of a batch: what a split has changed.
+    void count_locked(std::uint32_t first);
     void predict_values(std::uint32_t parent, const SplitPlan& out);
     std::uint32_t birth_id(std::size_t index) const {
         return live.vertex_count() + static_cast<std::uint32_t>(index);
@@ -180,11 +202,15 @@ class SplitCodec {
 
     // Sweeps.
     AskList asks_;
+    SweepKind kind_ = SweepKind::kRounds;
+    SymbolModel<2> kinds_;
     std::uint32_t sweep_ = 0, cursor_ = 0;
+    std::uint32_t older_ = 0;  ///< Vertices at the sweep's beginning.
     bool sparse_ = false;
     std::uint32_t error_bits_;
     std::int32_t split_size_ = 0;
     std::array<BitModel, 8 * 18 * 10> mark_;
+    std::array<BitModel, 10 * 7 * 3 * 10> batch_mark_;
     NumberModel marked_, unmarked_, error_, gap_;
 
     // Splits.

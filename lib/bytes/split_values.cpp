@@ -351,6 +351,18 @@ void SplitCodec::code_base(Coder& coder) {
 
 // ---- What a split does
 
+void SplitCodec::count_locked(std::uint32_t first) {
+    touched_.clear();
+    for (std::uint32_t v = first; v < live.vertex_count(); ++v) {
+        live.gather_corners(v, scratch_);
+        for (const std::uint32_t corner : scratch_) touched_.push_back(corner / 3);
+    }
+    std::sort(touched_.begin(), touched_.end());
+    touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
+    for (const std::uint32_t t : touched_)
+        for (const std::uint32_t v : live.triangles[t]) ++live.vertices[v].locked;
+}
+
 void SplitCodec::apply(const SplitPlan& plan) {
     if (is_plain_) return apply_plain(plan);
     const std::size_t stride = shape_.stride();
@@ -377,8 +389,7 @@ void SplitCodec::apply(const SplitPlan& plan) {
         if (shape_.lossless) finer[move.vertex] = move.finer;
         std::copy_n(plan.move_values.begin() + static_cast<std::ptrdiff_t>(i * stride), stride,
                     values.begin() + static_cast<std::ptrdiff_t>(move.vertex * stride));
-        live.vertices[move.vertex].acted = sweep_;
-        asks_.add(move.vertex);
+        touch(move.vertex).acted = sweep_;
     }
     values.insert(values.end(), plan.birth_values.begin(), plan.birth_values.end());
     for (const SplitPlan::Birth& birth : plan.births) {
@@ -386,21 +397,16 @@ void SplitCodec::apply(const SplitPlan& plan) {
         if (shape_.lossless) finer.push_back(birth.finer);
     }
     const auto touch_ring = [&](std::uint32_t v) {
-        live.vertices[v].acted = live.vertices[v].touched = sweep_;
-        asks_.add(v);
+        touch(v).acted = sweep_;
         for (const std::uint32_t corner : scratch_)
-            for (const std::uint32_t w : live.triangles[corner / 3]) {
-                live.vertices[w].touched = sweep_;
-                asks_.add(w);
-            }
+            for (const std::uint32_t w : live.triangles[corner / 3]) touch(w);
     };
     std::uint32_t begin = 0;
     for (std::uint32_t i = 0; i < plan.births.size(); ++i) {
         const SplitPlan::Birth& birth = plan.births[i];
         const auto taken = std::span(plan.taken).subspan(begin, birth.taken_end - begin);
         begin = birth.taken_end;
-        live.vertices[first + i].acted = live.vertices[first + i].touched = sweep_;
-        asks_.add(first + i);
+        touch(first + i).acted = sweep_;
         if (birth.parent == kNoVertex) continue;
         live.gather_corners(birth.parent, scratch_);
         touch_ring(birth.parent);
@@ -422,11 +428,9 @@ void SplitCodec::apply(const SplitPlan& plan) {
     for (std::size_t i = 0; i < plan.triangles.size(); ++i) {
         live.add_triangle(plan.triangles[i]);
         if (shape_.group_bits > 0) groups.push_back(plan.groups[i]);
-        for (const std::uint32_t v : plan.triangles[i]) {
-            live.vertices[v].touched = sweep_;
-            asks_.add(v);
-        }
+        for (const std::uint32_t v : plan.triangles[i]) touch(v);
     }
+    if (is_batch()) count_locked(first);
     live.link_twins(first);
 }
 
