@@ -629,13 +629,13 @@ class Places:
         step_b = self.second[kind].decode(coder, scale_b - 2 * shift_b, missed_a + regular)
         out[b] = within(at_b + (step_b << shift_b))
         missed = max(missed_a, departure(step_b, scale_b - 2 * shift_b))
-        side = 2 * min(max(rise - mean_scale + 11, 0), 11) + sinks
+        leans = 2 * min(max(rise - mean_scale + 11, 0), 11) + sinks
         slide = 0
         if normal[c] != 0:
             along_plane = sum((16 * (out[x] - origin[x]) - across[x]) * normal[x] for x in (a, b))
             slide = quotient(along_plane, normal[c]) if normal[c] > 0 else quotient(-along_plane, -normal[c])
         at_c = within(origin[c] + ((across[c] - slide + 8) >> 4))
-        out[c] = within(at_c + self.third[kind].decode(coder, flatness, missed, side))
+        out[c] = within(at_c + self.third[kind].decode(coder, flatness, missed, leans))
         return out
 
     def decode_free(self, coder, near):
