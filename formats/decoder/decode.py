@@ -516,17 +516,16 @@ class Cuts:
             raise Bad('a run has no place in its fan')
         begin, length = runs[coder.pick(weights)]
 
+        roles = [0] * count
+        for i in range(begin, begin + length + 1):
+            roles[i % count] = 2
+        if first_wing:
+            roles[begin] = 1
+        if last_wing:
+            roles[(begin + length) % count] = 1
         for i in range(count):
-            after = i - begin if i >= begin else i + n - begin
-            role = 2 if 0 < after < length else 0
-            if after == 0:
-                role = 1 if first_wing else 2
-            if after == length and (closed or i >= begin):
-                role = 1 if last_wing else 2
-            if not closed and i < begin:
-                role = 0
-            self.edge[edge[i]].saw(role)
-            self.chord[chord[i]].saw(role)
+            self.edge[edge[i]].saw(roles[i])
+            self.chord[chord[i]].saw(roles[i])
         lengths[scaled(length)] += 4
         if lengths[scaled(length)] > 4000:
             lengths[:] = [c >> 1 | 1 for c in lengths]
@@ -633,8 +632,8 @@ class Places:
         leans = 2 * min(max(rise - mean_scale + 11, 0), 11) + sinks
         slide = 0
         if normal[c] != 0:
-            side = sum((16 * (out[x] - origin[x]) - across[x]) * normal[x] for x in (a, b))
-            slide = quotient(side, normal[c]) if normal[c] > 0 else quotient(-side, -normal[c])
+            along_plane = sum((16 * (out[x] - origin[x]) - across[x]) * normal[x] for x in (a, b))
+            slide = quotient(along_plane, normal[c]) if normal[c] > 0 else quotient(-along_plane, -normal[c])
         at_c = within(origin[c] + ((across[c] - slide + 8) >> 4))
         out[c] = within(at_c + self.third[kind].decode(coder, flatness, missed, leans))
         return out

@@ -159,11 +159,13 @@ void SplitCodec::apply_plain(const SplitPlan& plan) {
     live.vertices[p].locked += std::uint32_t{run_.first_wing} + std::uint32_t{run_.last_wing};
 }
 
-template const char* SplitCodec::code_plain(RangeEncoder&, std::uint32_t, const Cut&, const SplitPlan&,
-                                            SplitPlan&);
 template const char* SplitCodec::code_plain(RangeDecoder&, std::uint32_t, const Cut&, const SplitPlan&,
+                                            SplitPlan&);
+#ifndef VSPLIT_READS_ONLY
+template const char* SplitCodec::code_plain(RangeEncoder&, std::uint32_t, const Cut&, const SplitPlan&,
                                             SplitPlan&);
 template const char* SplitCodec::code_plain(NoCoder&, std::uint32_t, const Cut&, const SplitPlan&,
                                             SplitPlan&);
+#endif
 
 }  // namespace vsplit
