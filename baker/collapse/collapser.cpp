@@ -18,7 +18,7 @@ namespace {
 constexpr double kPaperCosine = 0.6;
 
 /// Live vertices of a region: few enough for the cache, enough that most have no neighbours elsewhere.
-constexpr std::uint32_t kRegionVertices = 1 << 14;
+constexpr std::uint32_t kRegionVertices = 1 << 13;
 
 /// A round has an octave of costs, and more if that is less than this share of the vertices.
 constexpr std::uint32_t kRounds = 32;
@@ -32,6 +32,18 @@ double seconds_now() {
 
 Float3 to_float(Double3 p) {
     return {float(p.x), float(p.y), float(p.z)};
+}
+
+/// Appends the corners of triangles around `v` that lie back on each other.
+void find_folds(const StarMesh& mesh, std::uint32_t v, std::vector<std::uint32_t>& found) {
+    for (const std::uint32_t t : mesh.star(v))
+        for (const std::uint32_t other : mesh.star(v)) {
+            const Triangle &a = mesh.triangle(t), &b = mesh.triangle(other);
+            const std::uint32_t next = a[0] == v ? a[1] : a[1] == v ? a[2] : a[0];
+            const std::uint32_t last = b[0] == v ? b[2] : b[1] == v ? b[0] : b[1];
+            if (last == next && is_folded(mesh.normal(a), mesh.normal(b)))
+                found.insert(found.end(), {a[0], a[1], a[2], b[0], b[1], b[2]});
+        }
 }
 
 }  // namespace
@@ -78,19 +90,7 @@ void Collapser::prepare(const Mesh& mesh) {
     for (std::uint32_t v = 0; v < state_.mesh.vertex_count() && state_.components.count() > 1; ++v)
         if (state_.mesh.kind(v) != VertexKind::kDead && !state_.weights.empty() && state_.weights[v] > 1)
             state_.components.keep(state_.components.of(v));
-    tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, state_.mesh.vertex_count(), 4096),
-                      [&](const tbb::blocked_range<std::uint32_t>& range) {
-                          std::vector<Neighbour> scratch;
-                          for (std::uint32_t v = range.begin(); v < range.end(); ++v) {
-                              if (state_.mesh.kind(v) == VertexKind::kDead) continue;
-                              rebuild_shape(state_.mesh, v, state_.options.boundary_weight, scratch);
-                              std::copy_n(state_.mesh.vertex(v).area, 3, state_.histories[v].normal);
-                              if (!state_.weights.empty() && std::isfinite(state_.weights[v]))
-                                  state_.mesh.vertex(v).weight = state_.weights[v];
-                              state_.histories[v].witness = to_float(state_.mesh.position(v));
-                          }
-                      });
-    mark_folds();
+    shape_all();
     for (std::uint32_t v = 0; v < state_.mesh.vertex_count(); ++v)
         state_.area += double(state_.mesh.vertex(v).size) / 3;
     if (options.cost == Cost::kPaper) state_.paper = std::make_unique<PaperCost>(state_.mesh);
@@ -122,41 +122,32 @@ void Collapser::lock() {
         }
         if (lock) locked.push_back(v);
     }
-    if (state_.mesh.has_wedges()) state_.locked.assign(state_.mesh.vertex_count(), false);
+    state_.locked.assign(state_.mesh.vertex_count(), false);
     for (const std::uint32_t v : locked) {
         state_.mesh.fix(v);
-        if (state_.mesh.has_wedges()) state_.locked[v] = true;
+        state_.locked[v] = true;
         state_.components.keep(state_.components.of(v));
     }
 }
 
-void Collapser::mark_folds() {
+void Collapser::shape_all() {
     StarMesh& mesh = state_.mesh;
     tbb::enumerable_thread_specific<std::vector<std::uint32_t>> folded;
     tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, mesh.vertex_count(), 4096),
                       [&](const tbb::blocked_range<std::uint32_t>& range) {
+                          std::vector<Neighbour> scratch;
                           std::vector<std::uint32_t>& found = folded.local();
                           for (std::uint32_t v = range.begin(); v < range.end(); ++v) {
-                              const auto star = mesh.star(v);
-                              if (star.size() > kLargeStar) continue;
+                              if (mesh.kind(v) == VertexKind::kDead) continue;
+                              bool bends = false;
+                              rebuild_shape(mesh, v, state_.options.boundary_weight, scratch, &bends);
+                              std::copy_n(mesh.vertex(v).area, 3, state_.histories[v].normal);
+                              if (!state_.weights.empty() && std::isfinite(state_.weights[v]))
+                                  mesh.vertex(v).weight = state_.weights[v];
+                              state_.histories[v].witness = to_float(mesh.position(v));
                               // Of two triangles that lie back on each other, one departs much from any
                               // direction.
-                              const float* area = mesh.vertex(v).area;
-                              const Double3 mean{double(area[0]), double(area[1]), double(area[2])};
-                              const bool bends = std::any_of(star.begin(), star.end(), [&](std::uint32_t t) {
-                                  const Double3 n = mesh.normal(mesh.triangle(t));
-                                  const double along = dot(n, mean);
-                                  return along <= 0 || along * along < 0.1 * length2(n) * length2(mean);
-                              });
-                              if (!bends) continue;
-                              for (const std::uint32_t t : star)
-                                  for (const std::uint32_t other : star) {
-                                      const Triangle &a = mesh.triangle(t), &b = mesh.triangle(other);
-                                      const std::uint32_t next = a[0] == v ? a[1] : a[1] == v ? a[2] : a[0];
-                                      const std::uint32_t last = b[0] == v ? b[2] : b[1] == v ? b[0] : b[1];
-                                      if (last == next && is_folded(mesh.normal(a), mesh.normal(b)))
-                                          found.insert(found.end(), {a[0], a[1], a[2], b[0], b[1], b[2]});
-                                  }
+                              if (bends) find_folds(mesh, v, found);
                           }
                       });
     for (const auto& found : folded)
@@ -200,51 +191,63 @@ void Collapser::take(const Region& region) {
     vanished_ += region.vanished();
 }
 
+std::vector<std::uint32_t> Collapser::in_regions(const std::vector<std::uint32_t>& items, std::uint32_t size,
+                                                 std::uint32_t shift, Bucket begin, Bucket end) {
+    constexpr std::size_t kRoom = std::size_t{3} * kRegionVertices / 2;
+    const std::uint32_t vertices = state_.mesh.vertex_count(), regions = vertices / size + 2;
+    state_.mesh.make_room(regions * kRoom);
+    while (parts_.size() < regions) parts_.push_back(std::make_unique<Region>(state_));
+    const auto parts = std::span(parts_).first(regions);
+    tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, regions, 1),
+                      [&](const tbb::blocked_range<std::uint32_t>& range) {
+                          for (std::uint32_t i = range.begin(); i < range.end(); ++i) {
+                              const std::uint32_t low =
+                                                      i == 0 ? 0 : std::min(vertices, (i - 1) * size + shift),
+                                                  high = std::min(vertices, i * size + shift);
+                              parts[i]->open(low, high, begin, end, kRoom);
+                              auto v = std::lower_bound(items.begin(), items.end(), low);
+                              for (; v != items.end() && *v < high; ++v)
+                                  if (state_.slots[*v] < end) parts[i]->line_up(*v);
+                              parts[i]->run([] { return true; });
+                          }
+                      });
+    for (Bucket bucket = begin; bucket < end; ++bucket)
+        for (const auto& part : parts) {
+            const auto& ends = part->ends();
+            const std::size_t at = std::size_t(bucket - begin);
+            if (at >= ends.size()) continue;
+            const std::size_t from = at == 0 ? 0 : ends[at - 1];
+            record_.append(part->record(), from, ends[at]);
+            if (input_) wedge_record_.append(part->wedge_record(), from, ends[at], state_.wedges->stride());
+        }
+    std::vector<std::uint32_t> left;
+    for (const auto& part : parts) {
+        take(*part);
+        left.insert(left.end(), part->put_off().begin(), part->put_off().end());
+        part->close();
+    }
+    return left;
+}
+
 template <class Between>
 bool Collapser::round(Bucket begin, Bucket end, std::uint64_t number, const Between& between) {
     const std::uint32_t vertices = state_.mesh.vertex_count();
     const std::uint32_t regions = state_.mesh.live_vertices() / kRegionVertices;
-    Region whole(state_);
+    if (!whole_) whole_ = std::make_unique<Region>(state_);
+    Region& whole = *whole_;
     whole.open(0, vertices, begin, end);
     if (regions < 2) {
         for (const std::uint32_t v : alive_)
             if (state_.slots[v] < end) whole.line_up(v);
     } else {
-        // Every other round, regions begin elsewhere.
-        constexpr std::size_t kRoom = std::size_t{3} * kRegionVertices / 2;
-        state_.mesh.make_room((regions + 1) * kRoom);
-        const std::uint32_t size = vertices / regions + 1, shift = number % 2 == 0 ? size : size / 2;
-        std::vector<std::unique_ptr<Region>> parts(regions + 1);
-        tbb::parallel_for(
-            tbb::blocked_range<std::uint32_t>(0, regions + 1, 1),
-            [&](const tbb::blocked_range<std::uint32_t>& range) {
-                for (std::uint32_t i = range.begin(); i < range.end(); ++i) {
-                    const std::uint32_t low = i == 0 ? 0 : std::min(vertices, (i - 1) * size + shift),
-                                        high = std::min(vertices, i * size + shift);
-                    parts[i] = std::make_unique<Region>(state_);
-                    if (low == high) continue;
-                    parts[i]->open(low, high, begin, end, kRoom);
-                    auto v = std::lower_bound(alive_.begin(), alive_.end(), low);
-                    for (; v != alive_.end() && *v < high; ++v)
-                        if (state_.slots[*v] < end) parts[i]->line_up(*v);
-                    parts[i]->run([] { return true; });
-                }
-            });
-        for (Bucket bucket = begin; bucket < end; ++bucket)
-            for (const auto& part : parts) {
-                const auto& ends = part->ends();
-                const std::size_t at = std::size_t(bucket - begin);
-                if (at >= ends.size()) continue;
-                const std::size_t from = at == 0 ? 0 : ends[at - 1];
-                record_.append(part->record(), from, ends[at]);
-                if (input_)
-                    wedge_record_.append(part->wedge_record(), from, ends[at], state_.wedges->stride());
-            }
-        for (const auto& part : parts) {
-            take(*part);
-            for (const std::uint32_t item : part->put_off())
-                if (state_.slots[item] < end) whole.line_up(item);
-        }
+        // Every other round, regions begin elsewhere; what is put off comes up in regions that begin half a
+        // region later, where most of it is not at the border.
+        const std::uint32_t size = vertices / regions + 1, half = size / 2;
+        auto left = in_regions(alive_, size, number % 2 == 0 ? size : half, begin, end);
+        std::sort(left.begin(), left.end());
+        left = in_regions(left, size, number % 2 == 0 ? half : size, begin, end);
+        for (const std::uint32_t v : left)
+            if (state_.slots[v] < end) whole.line_up(v);
     }
     for (std::uint32_t c = vertices; c < state_.slots.size(); ++c)
         if (state_.slots[c] < end) whole.line_up(c);
@@ -252,6 +255,7 @@ bool Collapser::round(Bucket begin, Bucket end, std::uint64_t number, const Betw
     record_.append(whole.record(), 0, whole.record().size());
     if (input_) wedge_record_.append(whole.wedge_record(), 0, whole.record().size(), state_.wedges->stride());
     take(whole);
+    whole.close();
     return true;
 }
 
@@ -286,6 +290,7 @@ bool Collapser::run(const Progress& progress) {
     if (mesh.triangle_count() == 0) return true;
     for (std::uint32_t v = 0; v < mesh.vertex_count(); ++v)
         if (mesh.kind(v) != VertexKind::kDead) alive_.push_back(v);
+    record_.reserve(mesh.live_vertices(), mesh.triangle_count());
     price_all();
     const double total = double(mesh.triangle_count());
     double said = 0;
@@ -341,6 +346,8 @@ ProgressiveMesh Collapser::finish(CollapseReport& report) {
                             ? "there is nothing to collapse"
                             : "every remaining edge is fixed, or its collapse would change the topology";
     // Only the mesh itself is needed from here on, without its stars.
+    whole_.reset();
+    parts_.clear();
     state_.mesh.drop_stars();
     std::vector<VertexHistory>().swap(state_.histories);
     std::vector<Target>().swap(state_.targets);

@@ -22,13 +22,20 @@ class Collapser {
     bool run(const Progress& progress);
 
     /// After run(): the record as a progressive mesh; errors in object units, not yet calibrated.
+    /// Its groups are tags of copies(), if there are any.
     ProgressiveMesh finish(CollapseReport& report);
+    TriangleCopies take_copies() { return state_.mesh.take_copies(); }
 
   private:
     void prepare(const Mesh& mesh);
     void lock();
-    void mark_folds();
+    /// All vertices' shapes, and what is kept of the input; marks what lies back on each other.
+    void shape_all();
     void price_all();
+    /// Collapses those of `items` (ascending) that wait in the window by regions of `size` vertices, of which
+    /// the first ends at `shift`; returns what they put off.
+    std::vector<std::uint32_t> in_regions(const std::vector<std::uint32_t>& items, std::uint32_t size,
+                                          std::uint32_t shift, Bucket begin, Bucket end);
     /// Collapses what waits in the window; false if `between` asked to stop.
     template <class Between>
     bool round(Bucket begin, Bucket end, std::uint64_t number, const Between& between);
@@ -47,7 +54,9 @@ class Collapser {
     const Mesh* input_ = nullptr;  // of a mesh with wedges
     Record record_;
     WedgeRecord wedge_record_;
-    std::vector<std::uint32_t> alive_;  // vertices, ascending; up to as many dead ones among them
+    std::unique_ptr<Region> whole_;
+    std::vector<std::unique_ptr<Region>> parts_;  // of the round; kept for their memory
+    std::vector<std::uint32_t> alive_;            // vertices, ascending; up to as many dead ones among them
     std::uint64_t vanished_ = 0, rounds_ = 0;
     std::uint64_t unused_vertices_ = 0;
 };

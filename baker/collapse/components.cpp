@@ -59,7 +59,10 @@ Components::Components(const StarMesh& mesh, std::span<const std::uint32_t> part
     kept_.assign(alive_, false);
     for (std::uint32_t t = 0; t < mesh.triangle_count(); ++t) ++triangles_[component_[mesh.triangle(t)[0]]];
     reach_.assign(alive_, 0);
-    if (alive_ < 2) return;
+    if (alive_ < 2) {
+        std::vector<std::uint32_t>().swap(component_);
+        return;
+    }
 
     first_.assign(std::size_t{alive_} + 1, 0);
     std::vector<Box> boxes(alive_);

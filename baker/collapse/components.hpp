@@ -23,7 +23,7 @@ class Components {
     Components(const StarMesh& mesh, std::span<const std::uint32_t> part_of);
 
     std::uint32_t count() const { return static_cast<std::uint32_t>(triangles_.size()); }
-    std::uint32_t of(std::uint32_t vertex) const { return component_[vertex]; }
+    std::uint32_t of(std::uint32_t vertex) const { return component_.empty() ? 0 : component_[vertex]; }
     std::uint32_t live_triangles(std::uint32_t component) const { return triangles_[component]; }
     /// May run at once for several regions of the mesh.
     void lose(std::uint32_t component, std::uint32_t triangles) {
@@ -44,7 +44,7 @@ class Components {
     std::vector<std::uint32_t> live_vertices(const StarMesh& mesh, std::uint32_t component) const;
 
   private:
-    std::vector<std::uint32_t> component_;  // of each vertex
+    std::vector<std::uint32_t> component_;  // of each vertex; empty if there is one only
     std::vector<std::uint32_t> triangles_;  // live ones of each component
     std::vector<std::uint32_t> first_;      // its vertices: members_[first_[c] .. first_[c + 1])
     std::vector<std::uint32_t> members_;

@@ -17,9 +17,20 @@ VSPLIT_CLONES Deviation deviation_of(const EdgeStar& star, Double3 place,
     alignas(32) Lanes to_new[4] = {lanes(infinity), lanes(infinity), lanes(infinity), lanes(infinity)},
                       to_old = lanes(infinity);
     const Lanes3 to = lanes(place);
+    // A vertex that never moved is its own witness.
+    const auto is_own = [](Double3 p, const Float3& witness) {
+        return float(p.x) == witness.x && float(p.y) == witness.y && float(p.z) == witness.z;
+    };
+    std::size_t asked[4] = {0, 1}, count = 2;
+    const bool own_u = is_own(star.pu, hu.witness), own_v = is_own(star.pv, hv.witness);
+    if (!own_u) asked[count++] = 2;
+    if (!own_v) asked[count++] = 3;
     for (const EdgeStar::Wings& wing : star.wings) {
         const TriangleDistance<Lanes> after(to, wing.a, wing.b), before(wing.apex, wing.a, wing.b);
-        for (std::size_t i = 0; i < 4; ++i) to_new[i] = lesser(to_new[i], after.squared(lanes(points[i])));
+        for (std::size_t n = 0; n < count; ++n) {
+            const std::size_t i = asked[n];
+            to_new[i] = lesser(to_new[i], after.squared(lanes(points[i])));
+        }
         to_old = lesser(to_old, before.squared(to));
     }
     double nearest_old = least(to_old);
@@ -32,7 +43,7 @@ VSPLIT_CLONES Deviation deviation_of(const EdgeStar& star, Double3 place,
     const double t = du + dv > 0 ? du / (du + dv) : 0;
     result.at_place =
         float(std::sqrt(nearest_old) + (1 - t) * double(hu.deviation) + t * double(hv.deviation));
-    const double first = least(to_new[2]), second = least(to_new[3]);
+    const double first = least(to_new[own_u ? 0 : 2]), second = least(to_new[own_v ? 1 : 3]);
     result.witness = second > first ? hv.witness : hu.witness;
     const double farthest = std::max({least(to_new[0]), least(to_new[1]), first, second});
     result.largest = std::max(std::sqrt(farthest), double(result.at_place));

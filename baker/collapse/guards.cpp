@@ -7,6 +7,9 @@
 namespace vsplit::bake {
 namespace {
 
+/// Of as many around an edge, each is compared with each.
+constexpr std::size_t kFewTriangles = 16;
+
 enum class EdgeKind : std::uint8_t { kInner, kSpecial, kBoundary };
 
 /// Special: its triangles do not run along it once in each direction, or differ in wedges or group.
@@ -70,6 +73,15 @@ Fold fold_rule(const StarMesh& mesh, std::uint32_t u, std::uint32_t v) {
     return Fold::kAnywhere;
 }
 
+bool may_untie(const StarMesh& mesh, std::uint32_t u, std::uint32_t v, bool u_locked, bool v_locked) {
+    if (u_locked && v_locked) return false;
+    const auto is_knot = [&](std::uint32_t w, bool locked) {
+        return mesh.kind(w) == VertexKind::kFixed && !locked;
+    };
+    if (!is_knot(u, u_locked) && !is_knot(v, v_locked)) return false;
+    return !mesh.vertex(u).open || !mesh.vertex(v).open || kind_of_edge(mesh, u, v) == EdgeKind::kBoundary;
+}
+
 bool Guards::keeps_topology(const EdgeStar& star) {
     // Something must remain, also of the vertices across the edge.
     if (star.size == 0) return false;
@@ -78,7 +90,14 @@ bool Guards::keeps_topology(const EdgeStar& star) {
         for (std::size_t j = 0; j < i; ++j)
             if (star.opposite[i] == star.opposite[j]) return false;
     }
+    // What hangs together by the edge's triangles alone would come apart.
+    if (mesh_.kind(star.u) != VertexKind::kInner && mesh_.kind(star.v) != VertexKind::kInner)
+        for (const std::uint32_t w : star.opposite)
+            if (std::find(star.a.begin(), star.a.end(), w) == star.a.end() &&
+                std::find(star.b.begin(), star.b.end(), w) == star.b.end())
+                return false;
     // Link condition: the neighbours that both ends share are those across the edge, no others.
+    if (star.size <= kFewTriangles && star.opposite.size() <= 2) return links_meet_across(star);
     if (stamp_ > 0xFFFFFFF0u) {
         std::fill(stamps_.begin(), stamps_.end(), 0);
         stamp_ = 0;
@@ -94,6 +113,26 @@ bool Guards::keeps_topology(const EdgeStar& star) {
     for (std::size_t i = 0; i < star.size; ++i)
         if (stamps[star.a[i]] == shared && stamps[star.b[i]] == shared)
             (i < star.first_size ? first_has : second_has) = true;
+    return !(first_has && second_has);
+}
+
+bool Guards::links_meet_across(const EdgeStar& star) {
+    const std::uint32_t shared[2] = {star.opposite.empty() ? kNoVertex : star.opposite.front(),
+                                     star.opposite.empty() ? kNoVertex : star.opposite.back()};
+    const auto is_shared = [&](std::uint32_t w) { return w == shared[0] || w == shared[1]; };
+    bool first_has = false, second_has = false;
+    for (std::size_t i = 0; i < star.first_size; ++i)
+        first_has |= is_shared(star.a[i]) && is_shared(star.b[i]);
+    for (std::size_t i = star.first_size; i < star.size; ++i) {
+        const bool a = is_shared(star.a[i]), b = is_shared(star.b[i]);
+        second_has |= a && b;
+        bool meets = false;
+        for (std::size_t j = 0; j < star.first_size; ++j) {
+            meets |= !a && (star.a[j] == star.a[i] || star.b[j] == star.a[i]);
+            meets |= !b && (star.a[j] == star.b[i] || star.b[j] == star.b[i]);
+        }
+        if (meets) return false;
+    }
     return !(first_has && second_has);
 }
 

@@ -23,6 +23,10 @@ enum class Fold : std::uint8_t {
 /// By the kinds of the ends, and whether the edge is special.
 Fold fold_rule(const StarMesh& mesh, std::uint32_t u, std::uint32_t v);
 
+/// Whether a plain mesh's edge that fold_rule() forbids may fold if the link condition holds: at least one
+/// end is where sheets meet, and no boundary comes to touch another. Locked vertices are fixed for good.
+bool may_untie(const StarMesh& mesh, std::uint32_t u, std::uint32_t v, bool u_locked, bool v_locked);
+
 /// Two triangles of these normals, with a common edge, lie back on each other.
 inline bool is_folded(Double3 a, Double3 b) {
     const double along = dot(a, b);
@@ -45,8 +49,8 @@ class Guards {
     /// From now on only stars whose vertices are `low` to `high` - 1 are asked about.
     void open(std::uint32_t low, std::uint32_t high) {
         low_ = low;
-        stamps_.assign(high - low, 0);
-        stamp_ = 0;
+        // Old stamps are below all that come.
+        if (stamps_.size() < high - low) stamps_.resize(high - low, 0);
     }
 
     /// The link condition, and what else collapsing the edge would do to the topology.
@@ -59,6 +63,8 @@ class Guards {
                      const Strictness& strictness) const;
 
   private:
+    /// The link condition for few triangles, of which at most two are on the edge.
+    static bool links_meet_across(const EdgeStar& star);
     /// Whether triangle `i` of the new fan, of this normal, lies back on one beside it. `keeps_folds`: those
     /// that were there before do not count.
     bool folds_back(const EdgeStar& star, std::size_t i, Double3 normal, bool keeps_folds) const;

@@ -4,6 +4,7 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_group.h>
 
 #include <algorithm>
 #include <cmath>
@@ -21,7 +22,7 @@ namespace {
 /// Samples that are asked at once, at least, and per triangle of the input: the more, the closer together are
 /// those that follow each other.
 constexpr std::size_t kBatch = 1 << 15;
-constexpr double kBatchShare = 0.25;
+constexpr double kBatchShare = 0.125;
 /// Samples below this share of the tail are near enough.
 constexpr double kNear = 0.5;
 /// On a level's triangles together, about, where it has so few that their middles are not enough.
@@ -83,11 +84,19 @@ class Measurer {
                     float(std::min(std::sqrt(follow_points()), double(std::numeric_limits<float>::max())));
                 add_samples(split, kNear * tail_.at(forth_, rank));
             }
-            if (samples_.size() >= batch || walk_.splits_left() == 0) {
-                ask();
-                if (progress && !progress("measure errors", double(rank + 1) / double(count))) return {};
+            if (batch_.samples.size() >= batch || walk_.splits_left() == 0) {
+                // Asked while the walk goes on; the one before is done by now, or waited for.
+                asking_.wait();
+                std::swap(batch_, asked_);
+                batch_.clear();
+                asking_.run([this] { ask(); });
+                if (progress && !progress("measure errors", double(rank + 1) / double(count))) {
+                    asking_.wait();
+                    return {};
+                }
             }
         }
+        asking_.wait();
         for (std::size_t rank = 0; rank < count; ++rank) {
             float& result = result_[count - 1 - rank];
             result = std::max(result, forth_[rank]);
@@ -101,6 +110,14 @@ class Measurer {
         std::uint32_t begin, end;
         std::uint32_t split, place;  // place: of those of similar numbers the samples are close together
         float enough, distance;
+    };
+    struct Batch {
+        std::vector<Double3> samples;
+        std::vector<Group> groups;
+        void clear() {
+            samples.clear();
+            groups.clear();
+        }
     };
 
     void put(std::uint32_t point, std::uint32_t triangle) {
@@ -143,8 +160,8 @@ class Measurer {
     }
 
     void add_samples(std::uint32_t split, double enough) {
-        const auto begin = std::uint32_t(samples_.size());
-        const auto add = [&](Double3 at) { samples_.push_back(at); };
+        const auto begin = std::uint32_t(batch_.samples.size());
+        const auto add = [&](Double3 at) { batch_.samples.push_back(at); };
         for (const std::uint32_t v : walk_.acts()) add(place(v));
         const std::size_t each = kSamples / std::max<std::size_t>(walk_.triangles().size(), 1);
         edges_.clear();
@@ -170,35 +187,35 @@ class Measurer {
         std::sort(edges_.begin(), edges_.end());
         edges_.erase(std::unique(edges_.begin(), edges_.end()), edges_.end());
         for (const auto& [u, v] : edges_) add((place(u) + place(v)) * 0.5);
-        groups_.push_back({begin, std::uint32_t(samples_.size()), split,
-                           points_.empty() ? 0 : points_.front(), float(enough), 0});
+        batch_.groups.push_back({begin, std::uint32_t(batch_.samples.size()), split,
+                                 points_.empty() ? 0 : points_.front(), float(enough), 0});
     }
     bool acts(std::uint32_t v) const {
         return std::find(walk_.acts().begin(), walk_.acts().end(), v) != walk_.acts().end();
     }
 
+    /// The samples of asked_; the walk may go on meanwhile.
     void ask() {
-        std::sort(groups_.begin(), groups_.end(), [](const Group& a, const Group& b) {
+        auto& groups = asked_.groups;
+        std::sort(groups.begin(), groups.end(), [](const Group& a, const Group& b) {
             return a.place != b.place ? a.place < b.place : a.split < b.split;
         });
-        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, groups_.size(), 64),
+        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, asked_.groups.size(), 64),
                           [&](const tbb::blocked_range<std::size_t>& range) {
                               thread_local FarPoints far;
                               thread_local std::vector<std::uint32_t> around;
                               for (std::size_t i = range.begin(); i < range.end(); ++i)
-                                  groups_[i].distance =
-                                      float(std::min(farthest(groups_[i], far, around),
+                                  asked_.groups[i].distance =
+                                      float(std::min(farthest(asked_.groups[i], far, around),
                                                      double(std::numeric_limits<float>::max())));
                           });
-        for (const Group& group : groups_) result_[group.split] = group.distance;
-        groups_.clear();
-        samples_.clear();
+        for (const Group& group : asked_.groups) result_[group.split] = group.distance;
     }
 
     /// The largest distance from a group's samples to the input, if it is more than enough.
     double farthest(const Group& group, FarPoints& far, std::vector<std::uint32_t>& around) const {
-        far.points.assign(samples_.begin() + std::ptrdiff_t(group.begin),
-                          samples_.begin() + std::ptrdiff_t(group.end));
+        far.points.assign(asked_.samples.begin() + std::ptrdiff_t(group.begin),
+                          asked_.samples.begin() + std::ptrdiff_t(group.end));
         Double3 low = far.points.front(), high = low;
         for (const Double3 p : far.points) {
             low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
@@ -229,11 +246,11 @@ class Measurer {
     std::vector<float> forth_;                 // first collapse first
     std::vector<float> result_;
     Tail tail_;
-    std::vector<Double3> samples_;
-    std::vector<Group> groups_;
+    Batch batch_, asked_;
     std::vector<std::uint32_t> fan_, points_;
     std::vector<std::pair<std::uint32_t, std::uint32_t>> edges_;
     FanDistance near_;
+    tbb::task_group asking_;  // last: its task uses the others
 };
 
 }  // namespace

@@ -29,11 +29,50 @@ VSPLIT_CLONES void price_edges(const StarMesh& mesh, std::uint32_t u, std::span<
     }
 }
 
+namespace {
+
+/// The part of all triangles of a star, four at a time. `bends`: one of them departs much from their mean
+/// direction; not asked of large stars.
+VSPLIT_CLONES TrianglePart<double> part_of_star(const StarMesh& mesh, std::uint32_t v, bool& bends) {
+    const auto star = mesh.star(v);
+    const bool keeps = star.size() <= kLargeStar;
+    TrianglePart<Lanes> whole;
+    const Lanes3 p = lanes(mesh.position(v));
+    Lanes3 normals[kLargeStar / 4];
+    for (std::size_t begin = 0; begin < star.size(); begin += 4) {
+        std::uint32_t a[4], b[4];
+        for (std::size_t i = 0; i < 4; ++i) {
+            const Triangle& c = mesh.triangle(star[std::min(begin + i, star.size() - 1)]);
+            const std::size_t k = c[0] == v ? 0 : c[1] == v ? 1 : 2;
+            a[i] = c[k == 2 ? 0 : k + 1];
+            b[i] = c[k == 0 ? 2 : k - 1];
+        }
+        const Lanes3 normal = cross(mesh.positions(a) - p, mesh.positions(b) - p);
+        if (keeps) normals[begin / 4] = normal;
+        const LaneMask counts = double(begin) + Lanes{0, 1, 2, 3} < double(star.size());
+        whole.add(TrianglePart<Lanes>(normal), select(counts, lanes(1), lanes(0)));
+    }
+    TrianglePart<double> part;
+    for (std::size_t i = 0; i < 6; ++i) part.quadric[i] = sum(whole.quadric[i]);
+    part.area = {sum(whole.area.x), sum(whole.area.y), sum(whole.area.z)};
+    part.size = sum(whole.size);
+    bends = false;
+    if (!keeps) return part;
+    const Lanes3 mean = lanes(part.area);
+    const Lanes least = 0.1 * length2(mean);
+    for (std::size_t i = 0; 4 * i < star.size(); ++i) {
+        const Lanes along = dot(normals[i], mean);
+        bends |= any((along <= 0.0) | (along * along < least * length2(normals[i])));
+    }
+    return part;
+}
+
+}  // namespace
+
 Shape<double> exact_shape(const StarMesh& mesh, std::uint32_t v, double boundary_weight,
-                          std::vector<Neighbour>& scratch) {
-    TrianglePart<double> sum;
-    for (const std::uint32_t t : mesh.star(v))
-        sum.add(TrianglePart<double>(mesh.normal(mesh.triangle(t))), 1);
+                          std::vector<Neighbour>& scratch, bool* bends) {
+    bool ignored;
+    TrianglePart<double> sum = part_of_star(mesh, v, bends ? *bends : ignored);
     const Double3 p = mesh.position(v);
     if (mesh.kind(v) != VertexKind::kInner) {
         neighbours_of(mesh, v, scratch);

@@ -220,14 +220,15 @@ TrianglePart<double> update_ring(StarMesh& mesh, const EdgeStar& star);
 
 /// A vertex's shape from scratch, not rounded to floats. A boundary edge brings its length to the third power
 /// times the squared distance to its line (after Lindstrom and Turk 1998, section 4.2, in the dimension of
-/// the triangles' parts).
+/// the triangles' parts). `bends` says whether a triangle of the star, if that is not a large one, departs
+/// much from their mean direction.
 Shape<double> exact_shape(const StarMesh& mesh, std::uint32_t v, double boundary_weight,
-                          std::vector<Neighbour>& scratch);
+                          std::vector<Neighbour>& scratch, bool* bends = nullptr);
 
 /// The stored shape from scratch; the weight stays.
 inline void rebuild_shape(StarMesh& mesh, std::uint32_t v, double boundary_weight,
-                          std::vector<Neighbour>& scratch) {
-    const Shape<double> exact = exact_shape(mesh, v, boundary_weight, scratch);
+                          std::vector<Neighbour>& scratch, bool* bends = nullptr) {
+    const Shape<double> exact = exact_shape(mesh, v, boundary_weight, scratch, bends);
     TrianglePart<double> part;
     part.quadric = exact.quadric;
     part.area = exact.area;

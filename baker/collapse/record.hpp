@@ -17,10 +17,14 @@ class Record {
   public:
     explicit Record(bool has_weights) : has_weights_(has_weights) {}
 
-    /// `child` folded into `parent`, which was at `parent_position` with `parent_weight`; ranges of the two
-    /// lists that StarMesh::fold() appended to end here. The child keeps position and weight in the mesh.
+    /// For a mesh of so many.
+    void reserve(std::size_t vertices, std::size_t triangles);
+
+    /// `child` folded into `parent`, which was at `parent_position` with `parent_weight`, and has another
+    /// position or weight now if `moved`; ranges of the two lists that StarMesh::fold() appended to end here.
+    /// The child keeps position and weight in the mesh.
     void add(std::uint32_t child, std::uint32_t parent, const Float3& parent_position, float parent_weight,
-             float error);
+             bool moved, float error);
     /// A component went: `vertices` and (in `removed`) its triangles.
     void add_vanished(const std::vector<std::uint32_t>& vertices, float error);
     /// Appends steps `begin` to `end` - 1 of another record.
@@ -34,7 +38,8 @@ class Record {
     struct Step {
         std::uint32_t child =
             0;  ///< Or kNoVertex: a component vanished; the parent is its number among those.
-        std::uint32_t parent = 0;
+        std::uint32_t parent : 31 = 0;
+        std::uint32_t moved : 1 = 0;
         std::uint32_t corners_end = 0;
         std::uint32_t removed_end = 0;
         Float3 parent_position;
@@ -51,6 +56,11 @@ class Record {
                            std::vector<std::uint32_t>* births);
 
   private:
+    std::uint32_t vanished_end(std::uint32_t number) const {
+        return number + 1 < vanished_begins_.size() ? vanished_begins_[number + 1]
+                                                    : std::uint32_t(vanished_.size());
+    }
+
     std::vector<Step> steps_;
     std::vector<float> parent_weights_;
     std::vector<std::uint32_t> vanished_;         // vertices of vanished components

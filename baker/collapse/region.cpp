@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "wedge_cost.hpp"
 
@@ -62,6 +63,11 @@ void Region::open(std::uint32_t low, std::uint32_t high, Bucket begin, Bucket en
     vanished_ = 0;
 }
 
+void Region::close() {
+    record_ = Record(false);
+    wedge_record_ = {};
+}
+
 Target Region::best_of(std::uint32_t u) {
     list_edges(u, listed_);
     Target best;
@@ -70,6 +76,13 @@ Target Region::best_of(std::uint32_t u) {
 }
 
 bool Region::star_inside(std::uint32_t v) const {
+    if (mesh_.kind(v) == VertexKind::kInner) {
+        for (const std::uint32_t t : mesh_.star(v)) {
+            const Triangle& c = mesh_.triangle(t);
+            if (!inside(c[0] == v ? c[1] : c[1] == v ? c[2] : c[0])) return false;
+        }
+        return true;
+    }
     for (const std::uint32_t t : mesh_.star(v))
         for (const std::uint32_t w : mesh_.triangle(t))
             if (!inside(w)) return false;
@@ -138,8 +151,12 @@ Fold Region::fold_of(std::uint32_t u, std::uint32_t v) const {
     // A hub's edges would break the limit; pricing them at each collapse near it would be quadratic.
     const bool hub = std::max(mesh_.star(u).size(), mesh_.star(v).size()) > state_.strictness.max_valence;
     if (hub) return Fold::kNever;
+    if (!mesh_.has_wedges() && mesh_.kind(u) == VertexKind::kInner && mesh_.kind(v) == VertexKind::kInner)
+        return Fold::kAnywhere;
     const Fold fold = fold_rule(mesh_, u, v);
-    return fold == Fold::kNever && mesh_.has_wedges() && !state_.paper ? relaxed_fold(u, v) : fold;
+    if (fold != Fold::kNever || state_.paper) return fold;
+    if (!mesh_.has_wedges() && !may_untie(mesh_, u, v, state_.locked[u], state_.locked[v])) return fold;
+    return relaxed_fold(u, v);
 }
 
 Fold Region::relaxed_fold(std::uint32_t u, std::uint32_t v) const {
@@ -147,7 +164,7 @@ Fold Region::relaxed_fold(std::uint32_t u, std::uint32_t v) const {
     if (state_.locked[u] && state_.locked[v]) return Fold::kNever;
     if (state_.locked[u] || state_.locked[v]) return state_.locked[u] ? Fold::kIntoFirst : Fold::kIntoSecond;
     // Boundaries stay where they are, and apart from each other, until nothing else is left.
-    if (state_.strictness.keep_orientation) {
+    if (state_.strictness.keep_orientation && (mesh_.has_wedges() || open_u != open_v)) {
         if (open_u && open_v) return Fold::kNever;
         if (open_u || open_v) return open_u ? Fold::kIntoFirst : Fold::kIntoSecond;
     }
@@ -169,12 +186,15 @@ Region::Outcome Region::attempt(std::uint32_t u, const Option& option, Bucket bu
     cost = kNeverCost;
     if (!is_whole() && !star_inside(option.other)) return Outcome::kElsewhere;
     star_.gather(mesh_, u, option.other);
+    fetch_around(star_);
     bool relaxed = false;
     if (mesh_.has_wedges() && !state_.paper) {
         if (!Guards::leaves_something(star_)) return Outcome::kWaits;
         relaxed = !guards_.keeps_topology(star_) || fold_rule(mesh_, u, option.other) == Fold::kNever;
     } else if (!guards_.keeps_topology(star_)) {
         return Outcome::kWaits;
+    } else {
+        relaxed = !state_.paper && fold_rule(mesh_, u, option.other) == Fold::kNever;
     }
     const double weight = 0.5 * (double(mesh_.vertex(u).weight) + double(mesh_.vertex(option.other).weight));
     if (mesh_.has_wedges()) wedge_star_.gather(mesh_, star_, parent_of(star_, option));
@@ -236,6 +256,24 @@ Region::Outcome Region::attempt(std::uint32_t u, const Option& option, Bucket bu
     return Outcome::kDone;
 }
 
+void Region::fetch_around(const EdgeStar& star) const {
+    // What guards, fold and repricing read beyond the star's places.
+    fetch_ahead(&state_.histories[star.u]);
+    fetch_ahead(&state_.histories[star.v]);
+    for (std::size_t i = 0; i < star.size; ++i) {
+        const std::uint32_t w = star.a[i];
+        fetch_ahead(&state_.histories[w]);
+        fetch_ahead(&state_.targets[w]);
+        fetch_ahead(&state_.slots[w]);
+    }
+    for (const std::uint32_t w : star.opposite) {
+        mesh_.prefetch_star(w);
+        fetch_ahead(&state_.histories[w]);
+        fetch_ahead(&state_.targets[w]);
+        fetch_ahead(&state_.slots[w]);
+    }
+}
+
 std::uint32_t Region::parent_of(const EdgeStar& star, const Option& option) const {
     if (option.fold == Fold::kIntoFirst) return star.u;
     if (option.fold == Fold::kIntoSecond) return star.v;
@@ -277,7 +315,10 @@ void Region::apply(const EdgeStar& star, const Option& option, Float3 place, con
                                          wedge_record_.corner_wedges);
     room_ -= std::min(room_, taken);
     if (mesh_.has_wedges()) wedge_record_.close();
-    record_.add(child, parent, parent_position, parent_weight, float(deviation.largest));
+    const bool moved =
+        std::memcmp(&place, &parent_position, sizeof(Float3)) != 0 ||
+        (!state_.weights.empty() && 0.5f * (parent_weight + state_.weights[child]) != parent_weight);
+    record_.add(child, parent, parent_position, parent_weight, moved, float(deviation.largest));
     ++lost_vertices_;
     lose_of(state_.components.of(parent), std::uint32_t(record_.removed.size() - before));
     mesh_.set_raw_position(parent, place);
@@ -369,29 +410,25 @@ void Region::prefetch() const {
     };
     const auto nothing = [](std::uint32_t) {};
     const auto neighbours = [&](std::uint32_t v) {
-        fetch_ahead(&state_.histories[v]);
         if (mesh_.star(v).size() > kLargeStar) return;
         for (const std::uint32_t t : mesh_.star(v)) {
             // Of a closed fan, the next corner of every triangle is every neighbour.
             const Triangle& c = mesh_.triangle(t);
-            const std::uint32_t w = c[0] == v ? c[1] : c[1] == v ? c[2] : c[0];
-            mesh_.prefetch_vertex(w);
-            fetch_ahead(&state_.histories[w]);
-            fetch_ahead(&state_.targets[w]);
+            mesh_.prefetch_vertex(c[0] == v ? c[1] : c[1] == v ? c[2] : c[0]);
         }
     };
-    if (const std::uint32_t v = queue_.peek(20); v < vertices) {
+    if (const std::uint32_t v = queue_.peek(5); v < vertices) {
         mesh_.prefetch_vertex(v);
         fetch_ahead(&state_.targets[v]);
     }
     later(
-        15, [&](std::uint32_t v) { mesh_.prefetch_star(v); },
+        4, [&](std::uint32_t v) { mesh_.prefetch_star(v); },
         [&](std::uint32_t v) { mesh_.prefetch_vertex(v); });
     later(
-        10, [&](std::uint32_t v) { mesh_.prefetch_triangles(v); },
+        3, [&](std::uint32_t v) { mesh_.prefetch_triangles(v); },
         [&](std::uint32_t v) { mesh_.prefetch_star(v); });
-    later(6, neighbours, [&](std::uint32_t v) { mesh_.prefetch_triangles(v); });
-    later(3, nothing, neighbours);
+    later(2, neighbours, [&](std::uint32_t v) { mesh_.prefetch_triangles(v); });
+    later(1, nothing, neighbours);
 }
 
 void Region::process(std::uint32_t u, Bucket bucket) {

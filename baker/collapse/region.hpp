@@ -60,7 +60,7 @@ struct CollapseState {
     double area = 0;       ///< Of all triangles of the input; working units.
     double mean_star = 0;  ///< Area around an edge of the mesh as it is now, if triangles were all alike.
     std::vector<VertexHistory> histories;
-    std::vector<bool> locked;     ///< Of a mesh with wedges: never move nor go.
+    std::vector<bool> locked;     ///< Never move nor go.
     std::vector<float> weights;   ///< Empty: none painted.
     std::vector<Target> targets;  ///< kNoVertex: list all again.
     std::vector<Bucket> slots;    ///< Where each vertex waits, then each component.
@@ -79,6 +79,8 @@ class Region {
     /// Gets ready for vertices `low` to `high` - 1 and costs of buckets `begin` to `end` - 1.
     /// May take `room` entries of the mesh's arena, which are there; the whole mesh makes its own room.
     void open(std::uint32_t low, std::uint32_t high, Bucket begin, Bucket end, std::size_t room = 0);
+    /// Frees the record.
+    void close();
     /// Lines up an item of the range that waits within the window.
     void line_up(std::uint32_t item) { queue_.line_up(item); }
     /// Collapses until nothing in the window waits. `between` is called now and then, and stops if false.
@@ -134,14 +136,15 @@ class Region {
     Candidate evaluate(std::uint32_t u, std::uint32_t v, Fold fold) const;
     /// How an edge may fold as strictly as things are now.
     Fold fold_of(std::uint32_t u, std::uint32_t v) const;
-    /// How one may that the rules of topology and seams forbid: holes close, seams end. Only meshes with
-    /// wedges are so relaxed.
+    /// How one may that the rules of topology and seams forbid: holes close, seams end. Of plain meshes only
+    /// where may_untie().
     Fold relaxed_fold(std::uint32_t u, std::uint32_t v) const;
     /// Prices all edges of the list, which are those of `u`.
     void price(std::uint32_t u, EdgeList& list) const;
     /// The edges that `u` owns, with their costs.
     void list_edges(std::uint32_t u, EdgeList& list) const;
     void prefetch() const;
+    void fetch_around(const EdgeStar& star) const;
     void process(std::uint32_t u, Bucket bucket);
     void process_component(std::uint32_t component, Bucket bucket);
     /// kWaits sets `cost` to what it has to wait for (infinity: never as things are).

@@ -97,6 +97,7 @@ StarMesh::StarMesh(const Mesh& mesh, const std::vector<Triangle>& corners,
         if (!groups.empty()) groups_[to] = groups[i];
     }
 
+    if (corners.empty()) copies_.merge(triangles_, std::span(place).first(vertices));
     for (const Triangle& t : triangles_)
         for (const std::uint32_t v : t) ++vertices_[v].star_size;
     std::uint32_t begin = 0;
@@ -114,17 +115,26 @@ StarMesh::StarMesh(const Mesh& mesh, const std::vector<Triangle>& corners,
 
     live_triangles_ = triangle_count();
     live_vertices_ = 0;
-    classify();
+    if (classify() && !has_wedges() && copies_.orient(triangles_)) classify();
 }
 
-void StarMesh::classify() {
-    tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, vertex_count(), 4096),
-                      [&](const tbb::blocked_range<std::uint32_t>& range) {
-                          ClassifyScratch scratch;
-                          for (std::uint32_t v = range.begin(); v < range.end(); ++v) classify(v, scratch);
-                      });
+bool StarMesh::classify() {
+    std::atomic<bool> disagree = false;
+    tbb::parallel_for(
+        tbb::blocked_range<std::uint32_t>(0, vertex_count(), 4096),
+        [&](const tbb::blocked_range<std::uint32_t>& range) {
+            ClassifyScratch scratch;
+            for (std::uint32_t v = range.begin(); v < range.end(); ++v) {
+                classify(v, scratch);
+                if (kind(v) == VertexKind::kDead || kind(v) == VertexKind::kInner) continue;
+                if (std::any_of(scratch.ring.begin(), scratch.ring.end(),
+                                [](const Neighbour& n) { return n.out + n.in == 2 && n.out != 1; }))
+                    disagree = true;
+            }
+        });
     live_vertices_ = static_cast<std::uint32_t>(std::count_if(
         vertices_.begin(), vertices_.end(), [](const Vertex& v) { return v.kind != VertexKind::kDead; }));
+    return disagree;
 }
 
 void StarMesh::classify(std::uint32_t v, ClassifyScratch& scratch) {
@@ -134,6 +144,10 @@ void StarMesh::classify(std::uint32_t v, ClassifyScratch& scratch) {
     vertex.kind = VertexKind::kFixed;
     if (vertex.star_size == 0) {
         vertex.kind = VertexKind::kDead;
+        return;
+    }
+    if (!has_wedges() && is_closed_fan(v)) {
+        vertex.kind = VertexKind::kInner;
         return;
     }
     neighbours_of(*this, v, ring);
@@ -184,6 +198,28 @@ void StarMesh::classify(std::uint32_t v, ClassifyScratch& scratch) {
     bool connected = true;
     for (std::uint32_t i = 1; i < ring.size(); ++i) connected &= find_root(roots, i) == find_root(roots, 0);
     if (connected) vertex.kind = special == 0 ? VertexKind::kInner : VertexKind::kCurve;
+}
+
+bool StarMesh::is_closed_fan(std::uint32_t v) const {
+    constexpr std::size_t kMost = 16;
+    std::uint32_t next[kMost], last[kMost];
+    const auto fan = star(v);
+    if (fan.size() > kMost) return false;
+    for (std::size_t i = 0; i < fan.size(); ++i) {
+        const Triangle& c = triangles_[fan[i]];
+        const std::size_t k = c[0] == v ? 0 : c[1] == v ? 1 : 2;
+        next[i] = c[k == 2 ? 0 : k + 1];
+        last[i] = c[k == 0 ? 2 : k - 1];
+    }
+    // From triangle to triangle across the edges at v: back at the first after all of them, and not before.
+    std::size_t at = 0;
+    for (std::size_t step = 0; step < fan.size(); ++step) {
+        const std::uint32_t edge = last[at];
+        for (at = 0; at < fan.size() && next[at] != edge; ++at) {
+        }
+        if (at == fan.size() || (at == 0) != (step + 1 == fan.size())) return false;
+    }
+    return fan.size() > 2;
 }
 
 std::size_t StarMesh::fold(std::uint32_t child, std::uint32_t parent, std::span<const WedgePair> pairs,

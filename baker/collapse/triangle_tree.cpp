@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: MIT
 #include "triangle_tree.hpp"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <limits>
 #include <numeric>
@@ -17,6 +20,8 @@ Double3 to_double(const Float3& p) {
 }
 
 constexpr std::uint32_t kLeafTriangles = 4;
+/// Smaller parts are built by one thread.
+constexpr std::uint32_t kBranchTriangles = 1 << 12;
 constexpr int kBins = 16;
 /// Below this the heuristic may split unevenly; deeper, halves only. With 32-bit counts no path is longer
 /// than 48 + 32.
@@ -44,29 +49,62 @@ struct Bounds {
 TriangleTree::TriangleTree(const Mesh& mesh) : mesh_(mesh) {
     const std::size_t count = mesh.triangles.size();
     std::vector<Box> boxes(count);
-    for (std::size_t i = 0; i < count; ++i) {
-        Bounds bounds;
-        for (const std::uint32_t v : mesh.triangles[i]) {
-            const Float3& p = mesh.positions[v];
-            bounds.add({p.x, p.y, p.z}, {p.x, p.y, p.z});
-        }
-        boxes[i] = {bounds.low, bounds.high, {}};
-        for (std::size_t k = 0; k < 3; ++k) boxes[i].centre[k] = 0.5f * bounds.low[k] + 0.5f * bounds.high[k];
-    }
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 4096),
+                      [&](const tbb::blocked_range<std::size_t>& range) {
+                          for (std::size_t i = range.begin(); i < range.end(); ++i) {
+                              Bounds bounds;
+                              for (const std::uint32_t v : mesh.triangles[i]) {
+                                  const Float3& p = mesh.positions[v];
+                                  bounds.add({p.x, p.y, p.z}, {p.x, p.y, p.z});
+                              }
+                              boxes[i] = {bounds.low, bounds.high, {}};
+                              for (std::size_t k = 0; k < 3; ++k)
+                                  boxes[i].centre[k] = 0.5f * bounds.low[k] + 0.5f * bounds.high[k];
+                          }
+                      });
     order_.resize(count);
     std::iota(order_.begin(), order_.end(), 0u);
     nodes_.reserve(count + 2);
     // The second is none: children come in pairs that share a cache line.
     nodes_.push_back({{}, {}, 0, std::uint32_t(count)});
     nodes_.push_back({});
-    std::vector<Range> open{{0, 0}};
+    // The upper part first; what hangs below it at once, and then behind each other.
+    std::vector<Range> branches;
+    grow(nodes_, {0, 0}, boxes, std::max(kBranchTriangles, std::uint32_t(count / 64)), &branches);
+    std::vector<std::vector<Node>> grown(branches.size());
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, branches.size(), 1),
+                      [&](const tbb::blocked_range<std::size_t>& range) {
+                          for (std::size_t i = range.begin(); i < range.end(); ++i) {
+                              grown[i].push_back(nodes_[branches[i].node]);
+                              grown[i].push_back({});
+                              grow(grown[i], {0, branches[i].depth}, boxes, kLeafTriangles, nullptr);
+                          }
+                      });
+    for (std::size_t i = 0; i < branches.size(); ++i) {
+        const auto offset = std::uint32_t(nodes_.size()) - 2;
+        for (Node& node : grown[i])
+            if (node.count == 0) node.first += offset;
+        nodes_[branches[i].node] = grown[i].front();
+        nodes_.insert(nodes_.end(), grown[i].begin() + 2, grown[i].end());
+        std::vector<Node>().swap(grown[i]);
+    }
+}
+
+/// Splits a node until no part has more than `most` triangles; the parts are left at `parts`, if given.
+void TriangleTree::grow(std::vector<Node>& nodes, Range root, const std::vector<Box>& boxes,
+                        std::uint32_t most, std::vector<Range>* parts) {
+    std::vector<Range> open{root};
     while (!open.empty()) {
         const Range range = open.back();
         open.pop_back();
+        if (parts && nodes[range.node].count <= most) {
+            parts->push_back(range);
+            continue;
+        }
         std::array<float, 3> low, high;
-        fit(nodes_[range.node], boxes, low, high);
-        const Node node = nodes_[range.node];
-        if (node.count <= kLeafTriangles) continue;
+        fit(nodes[range.node], boxes, low, high);
+        const Node node = nodes[range.node];
+        if (node.count <= most) continue;
         int axis = 0;
         for (int k = 1; k < 3; ++k)
             if (high[std::size_t(k)] - low[std::size_t(k)] > high[std::size_t(axis)] - low[std::size_t(axis)])
@@ -75,11 +113,11 @@ TriangleTree::TriangleTree(const Mesh& mesh) : mesh_(mesh) {
         std::uint32_t middle = node.first + node.count / 2;
         if (extent > 0 && extent <= kFar && range.depth < kUnevenDepth)
             middle = split(node, boxes, axis, low[std::size_t(axis)], extent);
-        const auto child = std::uint32_t(nodes_.size());
-        nodes_.push_back({{}, {}, node.first, middle - node.first});
-        nodes_.push_back({{}, {}, middle, node.first + node.count - middle});
-        nodes_[range.node].first = child;
-        nodes_[range.node].count = 0;
+        const auto child = std::uint32_t(nodes.size());
+        nodes.push_back({{}, {}, node.first, middle - node.first});
+        nodes.push_back({{}, {}, middle, node.first + node.count - middle});
+        nodes[range.node].first = child;
+        nodes[range.node].count = 0;
         open.push_back({child, range.depth + 1});
         open.push_back({child + 1, range.depth + 1});
     }

@@ -26,7 +26,7 @@ class TriangleTree {
         std::uint32_t slot = 0;      ///< A guess for the next query nearby.
     };
 
-    /// `mesh` has a triangle, its corners exist and are finite. Runs on the calling thread alone.
+    /// `mesh` has a triangle, its corners exist and are finite.
     explicit TriangleTree(const Mesh& mesh);
 
     /// Puts the tree's own mesh in the order of its leaves, triangles and vertices: what is asked for
@@ -59,6 +59,8 @@ class TriangleTree {
         std::uint32_t node, depth;
     };
 
+    void grow(std::vector<Node>& nodes, Range root, const std::vector<Box>& boxes, std::uint32_t most,
+              std::vector<Range>* parts);
     void fit(Node& node, const std::vector<Box>& boxes, std::array<float, 3>& low,
              std::array<float, 3>& high) const;
     std::uint32_t split(const Node& node, const std::vector<Box>& boxes, int axis, float low, float extent);

@@ -357,7 +357,8 @@ test('a lost GL context comes back with the mesh', async (t) => {
         await back;
     });
     await page.waitForTimeout(300);
-    assert.deepEqual(likeness(before, await pixels(page)), { overlap: 1, difference: 0 });
+    const { overlap, difference } = likeness(before, await pixels(page));
+    assert.ok(overlap > 0.99 && difference < 8, `${overlap} of the outline, ${difference} of 255 apart`);
     // And goes on.
     await page.keyboard.press('End');
     await whole(page);
