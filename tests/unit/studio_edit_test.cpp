@@ -143,7 +143,9 @@ TEST_CASE("Document: paint on a coarse level lands on all that is split off from
     REQUIRE(here > 0);
     REQUIRE(later > here);
     // In place: all that is marked is there, and the rest is as it was.
-    const Mesh refined = d->refined_in_place();
+    const Result<Mesh> made = d->refined_in_place();
+    REQUIRE(made.ok());
+    const Mesh& refined = *made;
     std::set<std::uint32_t> used;
     for (const Triangle& t : refined.triangles) used.insert(t.begin(), t.end());
     std::size_t shown = 0;
