@@ -143,7 +143,9 @@ TEST_CASE("Document: paint on a coarse level lands on all that is split off from
     REQUIRE(here > 0);
     REQUIRE(later > here);
     // In place: all that is marked is there, and the rest is as it was.
-    const Mesh refined = d->refined_in_place();
+    const Result<Mesh> made = d->refined_in_place();
+    REQUIRE(made.ok());
+    const Mesh& refined = *made;
     std::set<std::uint32_t> used;
     for (const Triangle& t : refined.triangles) used.insert(t.begin(), t.end());
     std::size_t shown = 0;
@@ -328,8 +330,8 @@ TEST_CASE("The help tells every key and all that the mouse does, and no key does
         REQUIRE(help.find(std::string(gesture.what)) != help.npos);
     }
     // All that the panel does but its sliders has a key.
-    const std::set<int> sliders{kRatio,   kError, kRightRatio,  kKeepShare, kKeepRatio,
-                                kSize, kStrength, kSharpDegrees};
+    const std::set<int> sliders{kRatio,     kError, kRightRatio, kKeepShare,
+                                kKeepRatio, kSize,  kStrength,   kSharpDegrees};
     std::set<int> actions;
     for (const Binding& binding : bindings()) actions.insert(binding.action);
     for (int action = kNothing + 1; action <= kClose; ++action) {
