@@ -137,9 +137,9 @@ std::vector<SceneMaterial> scene_materials(const Scene& scene) {
         if (texture == nullptr || !texture->is_object()) continue;
         const auto t = number(member(*texture, "index"), textures.size());
         const auto image = t ? number(member(textures[*t], "source"), images.size()) : std::nullopt;
-        const auto view = image ? number(member(images[*image], "bufferView"),
-                                         list_of(root, "bufferViews").size())
-                                : std::nullopt;
+        const auto view =
+            image ? number(member(images[*image], "bufferView"), list_of(root, "bufferViews").size())
+                  : std::nullopt;
         if (!view) continue;
         const auto kept = scene.document->views.find(*view);
         if (kept == scene.document->views.end()) continue;

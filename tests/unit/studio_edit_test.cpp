@@ -330,8 +330,8 @@ TEST_CASE("The help tells every key and all that the mouse does, and no key does
         REQUIRE(help.find(std::string(gesture.what)) != help.npos);
     }
     // All that the panel does but its sliders has a key.
-    const std::set<int> sliders{kRatio,   kError, kRightRatio,  kKeepShare, kKeepRatio,
-                                kSize, kStrength, kSharpDegrees};
+    const std::set<int> sliders{kRatio,     kError, kRightRatio, kKeepShare,
+                                kKeepRatio, kSize,  kStrength,   kSharpDegrees};
     std::set<int> actions;
     for (const Binding& binding : bindings()) actions.insert(binding.action);
     for (int action = kNothing + 1; action <= kClose; ++action) {

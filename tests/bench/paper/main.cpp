@@ -88,9 +88,9 @@ Mesh unmarked_part(const Mesh& level, std::span<const std::uint32_t> origins, co
     return part;
 }
 
-/// The level's vertices whose weight is raised, if a vertex takes the average of the two that it was (the paper,
-/// section III.B): those into which a marked one went. Each marked one went into one vertex, so they are no
-/// more than were marked.
+/// The level's vertices whose weight is raised, if a vertex takes the average of the two that it was (the
+/// paper, section III.B): those into which a marked one went. Each marked one went into one vertex, so they
+/// are no more than were marked.
 std::size_t raised_at(const ProgressiveMesh& record, std::span<const std::uint32_t> origins,
                       const Marks& marks, std::size_t level) {
     const std::uint32_t alive = vertices_at(record, level);
@@ -134,7 +134,8 @@ void print_row(const char* name, const Row& row, const char* paper) {
 
 void head() {
     fmt::print(
-        "| model | whole | marked | of raised weight | unmarked | marked share | triangles with a marked corner | "
+        "| model | whole | marked | of raised weight | unmarked | marked share | triangles with a marked "
+        "corner | "
         "unmarked part: flips and folds | degenerate | least quality | paper (whole, marked, unmarked) |\n"
         "| --- | --: | --: | --: | --: | --: | --: | --: | --: | --: | --- |\n");
 }
@@ -199,8 +200,8 @@ void level_of_a_finer_one(Run& run, const Mesh& fine, const ProgressiveMesh& rec
         kVertices, fine.positions.size(), cost == Cost::kPaper ? "paper" : "quadric", automatic.factor(cost));
     head();
     print_row("full model", measure(again, fine, marks, fine.positions.size(), *ruler), "not told");
-    fmt::print("| as marked | {} | {} | {} | {} | {:.1f} % | | | | | 2645, 568, 2077 |\n", kVertices, kMarked, kMarked,
-               kVertices - kMarked, 100.0 * kMarked / kVertices);
+    fmt::print("| as marked | {} | {} | {} | {} | {:.1f} % | | | | | 2645, 568, 2077 |\n", kVertices, kMarked,
+               kMarked, kVertices - kMarked, 100.0 * kMarked / kVertices);
     const Row at60 = measure(again, fine, marks, kAt60, *ruler),
               at40 = measure(again, fine, marks, kAt40, *ruler);
     print_row("60 %", at60, "1587, 738, 849");

@@ -64,8 +64,7 @@ int StudioCommand::run() const {
             return fail_usage("--size wants WIDTHxHEIGHT, 320x240 to 8192x8192, not " + size);
         options.bench = bench;
         options.marks = marks;
-        if (const Status there = studio::check_display(); !there)
-            return fail_input("studio", there.error());
+        if (const Status there = studio::check_display(); !there) return fail_input("studio", there.error());
         bake::CollapseOptions chosen;
         if (const auto reason = collapse.set(chosen)) return fail_usage(*reason);
         auto watched = watch_reconstruction(input.path, options.width, options.height, common.threads, exit);

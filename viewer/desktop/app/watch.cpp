@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT
 #include "watch.hpp"
 
-
 #include "cloud.hpp"
 #include "vsplit/bake/files.hpp"
 #ifdef VSPLIT_WITH_CGAL

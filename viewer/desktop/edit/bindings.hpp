@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The vsplit authors
 // SPDX-License-Identifier: MIT
 //
-// What each key does and the mouse does, and the help that says so: the help is made of the table by which keys
-// are looked up.
+// What each key does and the mouse does, and the help that says so: the help is made of the table by which
+// keys are looked up.
 #pragma once
 
 #include <optional>

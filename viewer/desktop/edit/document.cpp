@@ -73,8 +73,8 @@ Result<std::unique_ptr<Document>> Document::open(Source source, bake::CollapseOp
         d.materials_ = bake::scene_materials(*d.source_.scene);
     }
     const Mesh& mesh = d.source_.mesh;
-    d.box_ = box_of(d.placed() ? d.show(mesh.positions, mesh.triangles, mesh.groups).positions
-                               : mesh.positions);
+    d.box_ =
+        box_of(d.placed() ? d.show(mesh.positions, mesh.triangles, mesh.groups).positions : mesh.positions);
     d.painting_ = Painting(d.source_.mesh.positions.size());
     if (!d.source_.mesh.weights.empty()) {
         d.painting_.replace(marks_of_weights(d.source_.mesh.weights));
@@ -141,8 +141,7 @@ std::vector<Triangle> Document::take_repainted() {
 
 Surface& Document::surface() {
     if (!surface_) {
-        if (placed())
-            shown_ = show(live_->positions(), live_->triangles(), groups_at_level());
+        if (placed()) shown_ = show(live_->positions(), live_->triangles(), groups_at_level());
         surface_ = std::make_unique<Surface>(shown_positions(), shown_triangles(),
                                              !source_.mesh.attributes.empty() || placed());
     }
@@ -272,7 +271,8 @@ bool Document::every_part_closed() const {
     if (!placed()) return studio::closed(mesh.positions, mesh.triangles);
     std::map<std::uint32_t, std::vector<Triangle>> parts;
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-        parts[mesh.groups.empty() ? 0 : placement_.part_of_group(mesh.groups[t])].push_back(mesh.triangles[t]);
+        parts[mesh.groups.empty() ? 0 : placement_.part_of_group(mesh.groups[t])].push_back(
+            mesh.triangles[t]);
     return std::all_of(parts.begin(), parts.end(),
                        [&](const auto& part) { return studio::closed(mesh.positions, part.second); });
 }
@@ -378,7 +378,10 @@ Result<std::vector<std::byte>> Document::encode(const std::string& extension, do
     LiveMesh copy = *live_;
     auto stream = write_progressive_mesh(copy.release(), write);
     if (!stream) return stream.error();
-    return bake::encode_progressive_scene(*source_.scene, level(0), *stream);
+    // Of a mesh that has vanished from the base, a triangle of the full one stands in.
+    bake::Scene whole = *source_.scene;
+    whole.mesh = source_.mesh;
+    return bake::encode_progressive_scene(whole, level(0), *stream);
 }
 
 }  // namespace vsplit::studio

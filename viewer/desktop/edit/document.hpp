@@ -58,8 +58,8 @@ class Document {
     std::size_t level_for_ratio(double ratio) const;
     double ratio() const;
     void go_to(std::size_t level);
-    /// A level of the record, or anything with its vertices' numbers, as it is shown: a scene's parts where its
-    /// nodes have them. What the brush, the rays and the box are about is the shown level.
+    /// A level of the record, or anything with its vertices' numbers, as it is shown: a scene's parts where
+    /// its nodes have them. What the brush, the rays and the box are about is the shown level.
     Shown show(std::span<const Float3> positions, std::span<const Triangle> triangles,
                std::span<const std::uint32_t> groups) const {
         return placement_.show(positions, triangles, groups);
@@ -102,9 +102,9 @@ class Document {
     void adopt(ProgressiveMesh record);
 
     /// The level with all that is marked at full detail, at once and without a bake: the splits of the record
-    /// whose error is above the level's, and all that the marked vertices need (ViewMesh, by priorities at run
-    /// time). Vertices keep the record's numbers: those that no triangle has are not there. Errors: kLimit, as
-    /// ViewMesh::make().
+    /// whose error is above the level's, and all that the marked vertices need (ViewMesh, by priorities at
+    /// run time). Vertices keep the record's numbers: those that no triangle has are not there. Errors:
+    /// kLimit, as ViewMesh::make().
     Result<Mesh> refined_in_place();
 
     /// Marks as a file has them, for the file's own vertices.

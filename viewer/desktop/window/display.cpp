@@ -16,11 +16,11 @@ Status check_display() {
         return Error{ErrorCode::kIo, std::move(message), Error::kNowhere, 0};
     };
     if (!name || !*name) return refuse("no display to draw with: set DISPLAY, or run under xvfb-run");
-    Display* display = XOpenDisplay(nullptr);
+    // Kept open: a server that goes back to its beginnings when the last client leaves would do so here.
+    static Display* const display = XOpenDisplay(nullptr);
     if (!display)
         return refuse("the display " + std::string(name) +
                       " does not answer: set DISPLAY to one that does, or run under xvfb-run");
-    XCloseDisplay(display);
     return Ok{};
 }
 
