@@ -43,9 +43,11 @@ Result<CollapseResult> collapse(const Mesh& mesh, const CollapseOptions& options
         return refuse("part_of must have one number per vertex");
     CollapseResult result;
     double start = cpu_seconds();
+    TriangleCopies copies;
     const auto record = [&](Collapser&& collapser) {
         if (!collapser.run(progress)) return false;
         result.mesh = collapser.finish(result.report);
+        copies = collapser.take_copies();
         return true;
     };
     if (mesh.attributes.empty() && mesh.groups.empty()) {
@@ -66,6 +68,8 @@ Result<CollapseResult> collapse(const Mesh& mesh, const CollapseOptions& options
         if (put_off) put_off_outliers(result.mesh, deviations, options.placement == Placement::kEndpoint);
         if (options.calibrate && !bound_errors(result.mesh, deviations, progress)) return cancelled;
     }
+    if (copies.any()) copies.expand(result.mesh);
+    result.report.duplicate_triangles = copies.count();
     result.report.calibrate_cpu_seconds = cpu_seconds() - start;
     return result;
 }

@@ -130,10 +130,10 @@ void Collapser::lock() {
         }
         if (lock) locked.push_back(v);
     }
-    if (state_.mesh.has_wedges()) state_.locked.assign(state_.mesh.vertex_count(), false);
+    state_.locked.assign(state_.mesh.vertex_count(), false);
     for (const std::uint32_t v : locked) {
         state_.mesh.fix(v);
-        if (state_.mesh.has_wedges()) state_.locked[v] = true;
+        state_.locked[v] = true;
         state_.components.keep(state_.components.of(v));
     }
 }

@@ -22,7 +22,9 @@ class Collapser {
     bool run(const Progress& progress);
 
     /// After run(): the record as a progressive mesh; errors in object units, not yet calibrated.
+    /// Its groups are tags of copies(), if there are any.
     ProgressiveMesh finish(CollapseReport& report);
+    TriangleCopies take_copies() { return state_.mesh.take_copies(); }
 
   private:
     void prepare(const Mesh& mesh);

@@ -73,6 +73,15 @@ Fold fold_rule(const StarMesh& mesh, std::uint32_t u, std::uint32_t v) {
     return Fold::kAnywhere;
 }
 
+bool may_untie(const StarMesh& mesh, std::uint32_t u, std::uint32_t v, bool u_locked, bool v_locked) {
+    if (u_locked && v_locked) return false;
+    const auto is_knot = [&](std::uint32_t w, bool locked) {
+        return mesh.kind(w) == VertexKind::kFixed && !locked;
+    };
+    if (!is_knot(u, u_locked) && !is_knot(v, v_locked)) return false;
+    return !mesh.vertex(u).open || !mesh.vertex(v).open || kind_of_edge(mesh, u, v) == EdgeKind::kBoundary;
+}
+
 bool Guards::keeps_topology(const EdgeStar& star) {
     // Something must remain, also of the vertices across the edge.
     if (star.size == 0) return false;
@@ -81,6 +90,12 @@ bool Guards::keeps_topology(const EdgeStar& star) {
         for (std::size_t j = 0; j < i; ++j)
             if (star.opposite[i] == star.opposite[j]) return false;
     }
+    // What hangs together by the edge's triangles alone would come apart.
+    if (mesh_.kind(star.u) != VertexKind::kInner && mesh_.kind(star.v) != VertexKind::kInner)
+        for (const std::uint32_t w : star.opposite)
+            if (std::find(star.a.begin(), star.a.end(), w) == star.a.end() &&
+                std::find(star.b.begin(), star.b.end(), w) == star.b.end())
+                return false;
     // Link condition: the neighbours that both ends share are those across the edge, no others.
     if (star.size <= kFewTriangles && star.opposite.size() <= 2) return links_meet_across(star);
     if (stamp_ > 0xFFFFFFF0u) {

@@ -23,6 +23,10 @@ enum class Fold : std::uint8_t {
 /// By the kinds of the ends, and whether the edge is special.
 Fold fold_rule(const StarMesh& mesh, std::uint32_t u, std::uint32_t v);
 
+/// Whether a plain mesh's edge that fold_rule() forbids may fold if the link condition holds: at least one
+/// end is where sheets meet, and no boundary comes to touch another. Locked vertices are fixed for good.
+bool may_untie(const StarMesh& mesh, std::uint32_t u, std::uint32_t v, bool u_locked, bool v_locked);
+
 /// Two triangles of these normals, with a common edge, lie back on each other.
 inline bool is_folded(Double3 a, Double3 b) {
     const double along = dot(a, b);

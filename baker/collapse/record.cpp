@@ -142,11 +142,13 @@ ProgressiveMesh Record::finish(const StarMesh& mesh, const std::vector<float>& w
     });
 
     out.triangles.resize(mesh.triangle_count());
+    if (mesh.copies().any()) out.groups.resize(mesh.triangle_count());
     out.corner_changes.resize(end.corners_end);
     out.moves.resize(end.moves_end);
     const auto bear_triangle = [&](std::uint32_t t) {
         const Triangle& c = mesh.triangle(t);
         out.triangles[triangle_birth[t]] = {vertex_birth[c[0]], vertex_birth[c[1]], vertex_birth[c[2]]};
+        if (mesh.copies().any()) out.groups[triangle_birth[t]] = mesh.copies().tag(t);
     };
     birth = 0;
     for (std::uint32_t t = 0; t < mesh.triangle_count(); ++t)

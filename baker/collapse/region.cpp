@@ -157,7 +157,9 @@ Fold Region::fold_of(std::uint32_t u, std::uint32_t v) const {
     if (!mesh_.has_wedges() && mesh_.kind(u) == VertexKind::kInner && mesh_.kind(v) == VertexKind::kInner)
         return Fold::kAnywhere;
     const Fold fold = fold_rule(mesh_, u, v);
-    return fold == Fold::kNever && mesh_.has_wedges() && !state_.paper ? relaxed_fold(u, v) : fold;
+    if (fold != Fold::kNever || state_.paper) return fold;
+    if (!mesh_.has_wedges() && !may_untie(mesh_, u, v, state_.locked[u], state_.locked[v])) return fold;
+    return relaxed_fold(u, v);
 }
 
 Fold Region::relaxed_fold(std::uint32_t u, std::uint32_t v) const {
@@ -165,7 +167,7 @@ Fold Region::relaxed_fold(std::uint32_t u, std::uint32_t v) const {
     if (state_.locked[u] && state_.locked[v]) return Fold::kNever;
     if (state_.locked[u] || state_.locked[v]) return state_.locked[u] ? Fold::kIntoFirst : Fold::kIntoSecond;
     // Boundaries stay where they are, and apart from each other, until nothing else is left.
-    if (state_.strictness.keep_orientation) {
+    if (state_.strictness.keep_orientation && (mesh_.has_wedges() || open_u != open_v)) {
         if (open_u && open_v) return Fold::kNever;
         if (open_u || open_v) return open_u ? Fold::kIntoFirst : Fold::kIntoSecond;
     }
@@ -206,6 +208,8 @@ Region::Outcome Region::attempt(std::uint32_t u, const Option& option, Bucket bu
         relaxed = !guards_.keeps_topology(star_) || fold_rule(mesh_, u, option.other) == Fold::kNever;
     } else if (!guards_.keeps_topology(star_)) {
         return Outcome::kWaits;
+    } else {
+        relaxed = !state_.paper && fold_rule(mesh_, u, option.other) == Fold::kNever;
     }
     std::uint32_t parent = parent_of(star_, option);
     if (!state_.batch_of.empty()) {

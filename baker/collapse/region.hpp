@@ -60,7 +60,7 @@ struct CollapseState {
     double area = 0;       ///< Of all triangles of the input; working units.
     double mean_star = 0;  ///< Area around an edge of the mesh as it is now, if triangles were all alike.
     std::vector<VertexHistory> histories;
-    std::vector<bool> locked;     ///< Of a mesh with wedges: never move nor go.
+    std::vector<bool> locked;     ///< Never move nor go.
     std::vector<float> weights;   ///< Empty: none painted.
     std::vector<Target> targets;  ///< kNoVertex: list all again.
     std::vector<Bucket> slots;    ///< Where each vertex waits, then each component.
@@ -142,8 +142,8 @@ class Region {
     Candidate evaluate(std::uint32_t u, std::uint32_t v, Fold fold) const;
     /// How an edge may fold as strictly as things are now.
     Fold fold_of(std::uint32_t u, std::uint32_t v) const;
-    /// How one may that the rules of topology and seams forbid: holes close, seams end. Only meshes with
-    /// wedges are so relaxed.
+    /// How one may that the rules of topology and seams forbid: holes close, seams end. Of plain meshes only
+    /// where may_untie().
     Fold relaxed_fold(std::uint32_t u, std::uint32_t v) const;
     /// Prices all edges of the list, which are those of `u`.
     void price(std::uint32_t u, EdgeList& list) const;

@@ -97,6 +97,7 @@ StarMesh::StarMesh(const Mesh& mesh, const std::vector<Triangle>& corners,
         if (!groups.empty()) groups_[to] = groups[i];
     }
 
+    if (corners.empty()) copies_.merge(triangles_, std::span(place).first(vertices));
     for (const Triangle& t : triangles_)
         for (const std::uint32_t v : t) ++vertices_[v].star_size;
     std::uint32_t begin = 0;
@@ -114,17 +115,26 @@ StarMesh::StarMesh(const Mesh& mesh, const std::vector<Triangle>& corners,
 
     live_triangles_ = triangle_count();
     live_vertices_ = 0;
-    classify();
+    if (classify() && !has_wedges() && copies_.orient(triangles_)) classify();
 }
 
-void StarMesh::classify() {
-    tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, vertex_count(), 4096),
-                      [&](const tbb::blocked_range<std::uint32_t>& range) {
-                          ClassifyScratch scratch;
-                          for (std::uint32_t v = range.begin(); v < range.end(); ++v) classify(v, scratch);
-                      });
+bool StarMesh::classify() {
+    std::atomic<bool> disagree = false;
+    tbb::parallel_for(
+        tbb::blocked_range<std::uint32_t>(0, vertex_count(), 4096),
+        [&](const tbb::blocked_range<std::uint32_t>& range) {
+            ClassifyScratch scratch;
+            for (std::uint32_t v = range.begin(); v < range.end(); ++v) {
+                classify(v, scratch);
+                if (kind(v) == VertexKind::kDead || kind(v) == VertexKind::kInner) continue;
+                if (std::any_of(scratch.ring.begin(), scratch.ring.end(),
+                                [](const Neighbour& n) { return n.out + n.in == 2 && n.out != 1; }))
+                    disagree = true;
+            }
+        });
     live_vertices_ = static_cast<std::uint32_t>(std::count_if(
         vertices_.begin(), vertices_.end(), [](const Vertex& v) { return v.kind != VertexKind::kDead; }));
+    return disagree;
 }
 
 void StarMesh::classify(std::uint32_t v, ClassifyScratch& scratch) {

@@ -7,8 +7,10 @@
 #include <atomic>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
+#include "copies.hpp"
 #include "vec.hpp"
 #include "vertex.hpp"
 #include "vsplit/mesh.hpp"
@@ -90,6 +92,9 @@ class StarMesh {
     /// 0 without groups.
     std::uint32_t group(std::uint32_t t) const { return groups_.empty() ? 0 : groups_[t]; }
     bool has_groups() const { return !groups_.empty(); }
+    /// Of a mesh without wedges.
+    const TriangleCopies& copies() const { return copies_; }
+    TriangleCopies take_copies() { return std::move(copies_); }
     std::span<const std::uint32_t> star(std::uint32_t v) const {
         return {arena_.data() + vertices_[v].star_begin, vertices_[v].star_size};
     }
@@ -149,7 +154,8 @@ class StarMesh {
     const std::vector<std::uint32_t>& input_vertices() const { return input_vertices_; }
 
   private:
-    void classify();
+    /// Of all vertices; whether triangles on two sides of an edge disagree anywhere.
+    bool classify();
     /// Surely one closed fan, consistently oriented, of few triangles.
     bool is_closed_fan(std::uint32_t v) const;
 
@@ -157,6 +163,7 @@ class StarMesh {
     std::vector<Triangle> triangles_;
     std::vector<Triangle> corners_;      // empty without wedges
     std::vector<std::uint32_t> groups_;  // empty, or one per triangle
+    TriangleCopies copies_;
     void grow_room(std::size_t entries);
 
     std::vector<std::uint32_t> arena_;  // used up to arena_end_

@@ -50,15 +50,20 @@ Dependencies::Dependencies(const ProgressiveMesh& mesh) : mesh_(mesh), corners_(
     next_.assign(3 * mesh.triangles.size(), kNoVertex);
     for (std::uint32_t t = 0; t < mesh.base_triangles; ++t) link(t);
 
-    // Per vertex: the last split that acted on it, and a chain of those that touched it since.
+    // Per vertex: the last split that acted on it, and a chain of those that touched it since; what is out of
+    // use among these is a chain too.
     struct Touch {
         std::uint32_t split, next;
     };
     std::vector<std::uint32_t> actor(mesh.positions.size(), kNoVertex),
         touched(mesh.positions.size(), kNoVertex);
     std::vector<Touch> touches;
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;  // before, after
-    std::vector<std::uint32_t> acts, around;
+    std::uint32_t unused = kNoVertex;
+    std::vector<std::uint32_t> before;  // what each split waits for, split after split
+    std::vector<std::uint32_t> acts, around, waits;
+    before.reserve(6 * std::size_t{count});
+    around_.reserve(9 * std::size_t{count});
+    around_begin_.reserve(std::size_t{count} + 1);
     waits_for.assign(count, 0);
     Split from{mesh.base_vertices, mesh.base_triangles, 0, 0, 0};
     for (std::uint32_t s = 0; s < count; ++s) {
@@ -82,32 +87,51 @@ Dependencies::Dependencies(const ProgressiveMesh& mesh) : mesh_(mesh), corners_(
         for (const std::uint32_t v : around)
             if (v < from.vertices_end) around_.push_back(v);
         around_begin_.push_back(around_.size());
-        const auto after = [&](std::uint32_t earlier) {
-            edges.emplace_back(earlier, s);
-            ++waits_for[s];
-        };
+        waits.clear();
         for (const std::uint32_t v : around)
-            if (v < from.vertices_end && actor[v] != kNoVertex) after(actor[v]);
+            if (v < from.vertices_end && actor[v] != kNoVertex) waits.push_back(actor[v]);
         for (const std::uint32_t v : acts) {
-            for (std::uint32_t i = touched[v]; i != kNoVertex; i = touches[i].next) after(touches[i].split);
+            for (std::uint32_t i = touched[v]; i != kNoVertex;) {
+                waits.push_back(touches[i].split);
+                const std::uint32_t next = touches[i].next;
+                touches[i].next = unused;
+                unused = i;
+                i = next;
+            }
             touched[v] = kNoVertex;
             actor[v] = s;
         }
+        std::sort(waits.begin(), waits.end());
+        waits.erase(std::unique(waits.begin(), waits.end()), waits.end());
+        waits_for[s] = static_cast<std::uint32_t>(waits.size());
+        before.insert(before.end(), waits.begin(), waits.end());
         for (std::uint32_t v = from.vertices_end; v < to.vertices_end; ++v) actor[v] = s;
         for (const std::uint32_t v : around)
             if (actor[v] != s) {
-                touches.push_back({s, touched[v]});
-                touched[v] = static_cast<std::uint32_t>(touches.size() - 1);
+                std::uint32_t at = unused;
+                if (at == kNoVertex) {
+                    at = static_cast<std::uint32_t>(touches.size());
+                    touches.emplace_back();
+                } else {
+                    unused = touches[at].next;
+                }
+                touches[at] = {s, touched[v]};
+                touched[v] = at;
             }
         replay(from, to);
         from = to;
     }
+    for (auto* done : {&first_, &next_, &actor, &touched}) std::vector<std::uint32_t>().swap(*done);
+    std::vector<Triangle>().swap(corners_);
+    std::vector<Touch>().swap(touches);
     begin_.assign(count + 1, 0);
-    for (const auto& [earlier, later] : edges) ++begin_[earlier + 1];
+    for (const std::uint32_t earlier : before) ++begin_[earlier + 1];
     for (std::uint32_t s = 0; s < count; ++s) begin_[s + 1] += begin_[s];
-    follower_.resize(edges.size());
+    follower_.resize(before.size());
     std::vector<std::uint32_t> at(begin_.begin(), begin_.end() - 1);
-    for (const auto& [earlier, later] : edges) follower_[at[earlier]++] = later;
+    std::size_t i = 0;
+    for (std::uint32_t s = 0; s < count; ++s)
+        for (const std::size_t end = i + waits_for[s]; i < end; ++i) follower_[at[before[i]]++] = s;
 }
 
 void Dependencies::link(std::uint32_t t) {

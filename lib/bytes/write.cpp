@@ -10,7 +10,6 @@
 #include "layout.hpp"
 #include "place_fit.hpp"
 #include "record_encoder.hpp"
-#include "vsplit/live_mesh.hpp"
 
 namespace vsplit {
 namespace {
@@ -63,9 +62,9 @@ Result<Encoded> encode(const ProgressiveMesh& mesh, const WriteOptions& options)
     Encoded out;
     out.canonical.origin = mesh.origin;
     {
-        LiveMesh full(mesh);
-        full.go_to(full.max_level());
-        const Bounds box = bounds_of(full.positions());
+        std::vector<Float3> full = mesh.positions;
+        for (const VertexMove& move : mesh.moves) full[move.vertex] = move.position;
+        const Bounds box = bounds_of(full);
         out.numbers = whole_numbers(
             mesh,
             Lattice::of(box.low, box.high,

@@ -205,6 +205,145 @@ TEST_CASE("Hard: duplicates, both ways round, and triangles stacked on an edge")
     require_sound(stack);
 }
 
+TEST_CASE("Hard: copies of triangles collapse as their originals do") {
+    const Mesh singles[] = {make_torus(24, 12), make_grid(12),
+                            join(make_sphere(12, 8), make_sphere(6, 4), {3, 0, 0})};
+    const auto distinct = [](Mesh level, bool turned) {
+        if (turned)
+            for (Triangle& t : level.triangles) std::swap(t[1], t[2]);
+        auto bits = triangle_bits(level);
+        bits.erase(std::unique(bits.begin(), bits.end()), bits.end());
+        return bits;
+    };
+    for (const Mesh& single : singles)
+        for (const bool both_ways : {false, true})
+            for (const bool shuffled : {false, true}) {
+                CAPTURE(both_ways, shuffled, single.triangles.size());
+                // Each beginning at another corner, and some before their originals.
+                Mesh mesh = single;
+                for (std::size_t i = 0; i < single.triangles.size(); ++i) {
+                    const Triangle& t = single.triangles[i];
+                    const std::size_t k = i % 3;
+                    Triangle copy{t[k], t[(k + 1) % 3], t[(k + 2) % 3]};
+                    if (both_ways) std::swap(copy[1], copy[2]);
+                    mesh.triangles.push_back(copy);
+                    if (i % 7 == 0) mesh.triangles.push_back(copy);
+                    if (shuffled && i % 5 != 0) std::swap(mesh.triangles[i], mesh.triangles.back());
+                }
+                require_sound(mesh);
+                const auto one = bake::collapse(single), more = bake::collapse(mesh);
+                REQUIRE(one.ok());
+                REQUIRE(more.ok());
+                const ProgressiveMesh& copies = more->mesh;
+                REQUIRE(copies.groups.empty());
+                CHECK(more->report.duplicate_triangles == mesh.triangles.size() - single.triangles.size());
+                CHECK(copies.base_vertices <= one->mesh.base_vertices + 2);
+                for (std::size_t level = 0; level <= copies.splits.size(); ++level) {
+                    const Mesh here = cut(copies, level);
+                    const auto sides = distinct(here, false);
+                    // Each triangle has its other side at every level.
+                    if (both_ways)
+                        REQUIRE(sides == distinct(here, true));
+                    else
+                        REQUIRE(2 * sides.size() <= here.triangles.size());
+                    if (shuffled) continue;
+                    const Mesh there = cut(one->mesh, level);
+                    REQUIRE(error_at(copies, level) == error_at(one->mesh, level));
+                    REQUIRE(sides.size() == there.triangles.size() * (both_ways ? 2 : 1));
+                    if (!both_ways) REQUIRE(sides == distinct(there, false));
+                }
+            }
+}
+
+TEST_CASE("Hard: triangles that run either way collapse as if they agreed, and come back as they were") {
+    for (const Mesh& single : {make_torus(24, 12), make_grid(12), make_sphere(16, 10)}) {
+        std::mt19937 random(7);
+        Mesh mesh = single;
+        for (Triangle& t : mesh.triangles)
+            if (random() % 3 == 0) std::swap(t[1], t[2]);
+        CAPTURE(mesh.triangles.size());
+        require_sound(mesh);
+        const auto one = bake::collapse(single), either = bake::collapse(mesh);
+        REQUIRE(one.ok());
+        REQUIRE(either.ok());
+        CHECK(either->report.duplicate_triangles == 0);
+        CHECK(either->mesh.groups.empty());
+        CHECK(either->mesh.positions == one->mesh.positions);
+        CHECK(either->mesh.splits.size() == one->mesh.splits.size());
+        CHECK(either->mesh.parents == one->mesh.parents);
+    }
+}
+
+TEST_CASE("Hard: sheets that cross, touch and share edges come down to few vertices") {
+    const auto welded = [](const std::vector<Mesh>& parts) {
+        Mesh all;
+        for (const Mesh& part : parts) {
+            std::vector<std::uint32_t> at;
+            for (const Float3& p : part.positions) {
+                auto same = std::find_if(all.positions.begin(), all.positions.end(), [&](const Float3& q) {
+                    return std::abs(p.x - q.x) + std::abs(p.y - q.y) + std::abs(p.z - q.z) < 1e-5f;
+                });
+                at.push_back(std::uint32_t(same - all.positions.begin()));
+                if (same == all.positions.end()) all.positions.push_back(p);
+            }
+            for (const Triangle& t : part.triangles) all.triangles.push_back({at[t[0]], at[t[1]], at[t[2]]});
+        }
+        return all;
+    };
+    const auto turned = [](Mesh mesh, int axis, float shift) {
+        for (Float3& p : mesh.positions)
+            p = axis == 0   ? Float3{shift, p.x, p.y}
+                : axis == 1 ? Float3{p.x, shift, p.y}
+                            : Float3{p.x, p.y, shift};
+        return mesh;
+    };
+    const Mesh grid = make_grid(12);
+    // Cells of foam: walls in three directions, where they meet there are edges of four triangles and points
+    // of many fans.
+    std::vector<Mesh> walls;
+    for (const int axis : {0, 1, 2})
+        for (const float shift : {0.0f, 0.25f, 0.5f, 0.75f, 1.0f}) walls.push_back(turned(grid, axis, shift));
+    // Spheres in a row, each touching the next in a point.
+    std::vector<Mesh> beads;
+    for (int i = 0; i < 6; ++i) {
+        beads.push_back(make_sphere(16, 10));
+        for (Float3& p : beads.back().positions) p.z += 2 * float(i);
+    }
+    // Patches, each hanging on the next by one corner.
+    std::vector<Mesh> chain;
+    for (int i = 0; i < 40; ++i) {
+        chain.push_back(make_grid(2));
+        for (Float3& p : chain.back().positions) {
+            p = {p.x + float(i), p.y + float(i), 0};
+            p.z = 0.3f * std::sin(p.x + p.y);
+        }
+    }
+    const struct {
+        const char* name;
+        Mesh mesh;
+        std::size_t most;
+    } cases[] = {{"foam", welded(walls), 64}, {"beads", welded(beads), 32}, {"chain", welded(chain), 130}};
+    for (const auto& [name, mesh, most] : cases) {
+        CAPTURE(name);
+        const Topology input = topology(mesh);
+        REQUIRE_FALSE(input.manifold());
+        require_sound(mesh);
+        const auto result = bake::collapse(mesh);
+        REQUIRE(result.ok());
+        CHECK(result->mesh.base_vertices <= most);
+        for (std::size_t level = 0; level <= result->mesh.splits.size();
+             level += 1 + result->mesh.splits.size() / 20) {
+            const Topology here = topology(cut(result->mesh, level));
+            // What is connected, and how often around, stays.
+            CHECK(here.parts.size() == input.parts.size());
+            CHECK(here.parts.front().euler == input.parts.front().euler);
+            CHECK(here.boundary_edges <= input.boundary_edges);
+            CHECK(here.non_manifold_edges <= input.non_manifold_edges);
+            CHECK(here.non_manifold_vertices <= input.non_manifold_vertices);
+        }
+    }
+}
+
 TEST_CASE("Hard: a Moebius strip and a Klein bottle have no two sides") {
     for (const bool closed : {false, true}) {
         constexpr int n = 30, m = 10;

@@ -17,7 +17,7 @@ using namespace vsplit::bench;
 struct Options {
     std::vector<std::string> files;
     std::string corpus = VSPLIT_CORPUS;
-    std::string json, markdown;
+    std::string json, markdown, resume;
     std::vector<std::string> only, peers;
     std::size_t samples = 0;
     bool quick = false;
@@ -27,6 +27,39 @@ bool write(const std::string& path, const std::string& text) {
     const auto status = vsplit::bake::write_file(path, std::as_bytes(std::span(text)), true);
     if (!status) fmt::print(stderr, "vsplit_bench_simplify: {}: {}\n", path, status.error().describe());
     return status.ok();
+}
+
+std::string parts_of(const Report& report) {
+    std::string parts;
+    const auto add = [&](bool there, const char* part) {
+        if (there) parts += (parts.empty() ? "" : ", ") + std::string(part);
+    };
+    add(!report.quality.empty(), "quality");
+    add(report.speed.has_value(), "speed");
+    add(!report.calibration.empty(), "calibration");
+    return parts;
+}
+
+/// Takes the parts that an earlier run with --json has measured: on this machine, of these models, with as
+/// many samples; the page then names that commit too. Says why not, if not.
+std::string take_measured(const std::string& path, Report& report) {
+    const auto bytes = vsplit::bake::read_file(path);
+    if (!bytes) return bytes.error().describe();
+    try {
+        const Json json = Json::parse(bytes->begin(), bytes->end());
+        const Machine machine = json.at("machine");
+        if (machine.cpu != report.machine.cpu) return "of another machine";
+        if (json.at("models") != report.models || json.at("samples") != report.samples)
+            return "of other models or samples";
+        json.at("quality").get_to(report.quality);
+        json.at("calibration").get_to(report.calibration);
+        if (json.contains("speed")) report.speed = json["speed"].get<Speed>();
+        if (machine.commit != report.machine.commit)
+            report.machine.commit += fmt::format("; {}: {}", machine.commit, parts_of(report));
+    } catch (const Json::exception& error) {
+        return error.what();
+    }
+    return {};
 }
 
 /// How to repeat it: the options that change figures, without this machine's folders.
@@ -53,13 +86,17 @@ int main(int argc, char** argv) {
     app.add_option("--markdown", options.markdown, "Write the page to this file too");
     app.add_option("--only", options.only, "Parts to measure; may be repeated")
         ->check(CLI::IsMember({"quality", "speed", "calibration"}));
+    app.add_option("--resume", options.resume,
+                   "Take the parts that a run with --json measured from that file, measure the others: the "
+                   "machine need be quiet for speed alone")
+        ->check(CLI::ExistingFile);
     app.add_option("--peer", options.peers, "Peers to run, by name, may be repeated (default: all)");
     app.add_option("--samples", options.samples, "Of the ruler, on each mesh (default: 100000; quick: 40000)")
         ->check(CLI::Range(1, 100'000'000));
     app.add_flag("--quick", options.quick, "Smaller models, fewer runs");
     CLI11_PARSE(app, argc, argv);
 
-    const auto wants = [&](const char* part) {
+    const auto chosen = [&](const char* part) {
         return options.only.empty() ||
                std::find(options.only.begin(), options.only.end(), part) != options.only.end();
     };
@@ -78,19 +115,25 @@ int main(int argc, char** argv) {
             return 2;
         }
     for (Peer& peer : report.peers) {
-        const bool chosen =
+        const bool named =
             options.peers.empty() || peer.name == "vsplit" ||
             std::find(options.peers.begin(), options.peers.end(), peer.name) != options.peers.end();
-        if (!chosen && peer.missing.empty()) peer.missing = "left out on the command line";
+        if (!named && peer.missing.empty()) peer.missing = "left out on the command line";
         if (!peer.missing.empty()) fmt::print(stderr, "{}: {}\n", peer.name, peer.missing);
     }
     vsplit::ruler::RulerOptions ruler;
     ruler.samples = report.samples;
-    if (wants("quality"))
+    if (!options.resume.empty())
+        if (const std::string fault = take_measured(options.resume, report); !fault.empty()) {
+            fmt::print(stderr, "vsplit_bench_simplify: {}: {}\n", options.resume, fault);
+            return 4;
+        }
+    if (chosen("quality") && report.quality.empty())
         for (const Model& model : models.quality)
             report.quality.push_back(measure_quality(model, report.peers, ruler, options.quick));
-    if (wants("speed")) report.speed = measure_speed(models.speed, report.peers, options.quick);
-    if (wants("calibration"))
+    if (chosen("speed") && !report.speed)
+        report.speed = measure_speed(models.speed, report.peers, options.quick);
+    if (chosen("calibration") && report.calibration.empty())
         for (const Model& model : models.quality)
             report.calibration.push_back(measure_calibration(model, ruler));
 

@@ -84,6 +84,7 @@ struct CollapseReport {
     std::uint64_t components = 0;            ///< Of the input.
     std::uint64_t unused_vertices = 0;       ///< That no triangle uses: left out of the record.
     std::uint64_t degenerate_triangles = 0;  ///< With two corners at one point: left out of the record.
+    std::uint64_t duplicate_triangles = 0;   ///< Same three vertices as another, either way round: follow it.
     std::uint64_t components_vanished = 0;   ///< Left out of the base mesh; one split brings each back.
     std::uint64_t fixed_vertices =
         0;  ///< Non-manifold corners, locked, or of infinite weight: never removed.
