@@ -344,6 +344,7 @@ void Region::apply(const EdgeStar& star, const Option& option, std::uint32_t par
         for (const std::uint32_t t : mesh_.star(child))
             for (const std::uint32_t w : mesh_.triangle(t)) state_.batch_of[w] = state_.batch;
     }
+    const bool onto_curve = mesh_.kind(child) == VertexKind::kCurve;
     const TrianglePart<double> part = update_ring(mesh_, star);
     const std::size_t before = record_.removed.size();
     const Float3 parent_position = mesh_.raw_position(parent);
@@ -368,6 +369,8 @@ void Region::apply(const EdgeStar& star, const Option& option, std::uint32_t par
     history.witness = deviation.witness;
     Vertex& shape = mesh_.vertex(parent);
     const Vertex& gone = mesh_.vertex(child);
+    // In a batch, the parent may be the inner one of the two: it is on the curve from now on.
+    if (onto_curve && shape.kind == VertexKind::kInner) shape.kind = VertexKind::kCurve;
     shape.folded |= gone.folded;
     shape.seam |= gone.seam;
     shape.open |= gone.open;
