@@ -198,12 +198,15 @@ class Batches {
     bool take(std::uint32_t s, Sweep& sweep) {
         const Split from = begin_of(s), to = mesh_.splits[s];
         std::uint32_t primary = kNoVertex;
+        bool trades = false;
         for (std::uint32_t v = from.vertices_end; v < to.vertices_end; ++v) {
+            trades |= traded_[v];
             const std::uint32_t parent = mesh_.parents[v];
             if (parent == kNoVertex) continue;
             if (number_[parent] == kNoVertex) return false;  // born in this sweep
             primary = std::min(primary, number_[parent]);
         }
+        if (!sweep.steps.empty() && (trades || closed_)) return false;
         for (std::uint32_t c = from.corners_end; c < to.corners_end; ++c)
             if (changed_[mesh_.corner_changes[c].corner / 3] == sweep_) return false;
         for (std::uint32_t m = from.moves_end; m < to.moves_end; ++m) {
@@ -222,8 +225,10 @@ class Batches {
             changed_[mesh_.corner_changes[c].corner / 3] = sweep_;
             takes |= number_[mesh_.parents[mesh_.corner_changes[c].vertex]] == primary;
         }
+        // Where names are traded, other triangles change than the record says: no split but this.
+        closed_ = trades;
         // A parent that keeps its triangles may have none left to take.
-        if (!takes) sweep.kind = SweepKind::kBatchAll;
+        if (!takes || trades) sweep.kind = SweepKind::kBatchAll;
         for (std::uint32_t t = from.triangles_end; t < to.triangles_end; ++t) changed_[t] = sweep_;
         sweep.steps.push_back({s, primary});
         return true;
@@ -253,6 +258,7 @@ class Batches {
     std::vector<Moved> moved_;
     std::vector<std::pair<std::uint32_t, std::uint32_t>> births_;  // parent's number, vertex
     std::uint32_t sweep_ = 0, alive_ = 0;
+    bool closed_ = false;  // takes no more splits
 };
 
 }  // namespace
