@@ -128,6 +128,7 @@ bool CutModel::code(Coder& coder, const LiveStars& mesh, const Star& star, std::
         for (std::uint32_t l = family == 2 ? 0 : 1; l < cut.length; ++l) before += sums_[l];
         for (std::uint32_t i = 0; i < lane; ++i) before += weights_[cut.length][i];
     }
+    if (weights_[out.length][lane] == 0) return false;  // a writer's run with a locked sector
     coder.take(before, weights_[out.length][lane], sum);
     learn(star, out);
     return true;
