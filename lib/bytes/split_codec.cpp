@@ -317,9 +317,11 @@ const char* SplitCodec::code_taken(Coder& coder, const SplitPlan& wanted, std::s
     template const char* SplitCodec::code_head(Coder&, SweepHead&);     \
     template const char* SplitCodec::code_mark(Coder&, std::uint32_t&); \
     template const char* SplitCodec::code_split(Coder&, std::uint32_t, const SplitPlan&, SplitPlan&);
-VSPLIT_INSTANTIATE(RangeEncoder)
 VSPLIT_INSTANTIATE(RangeDecoder)
+#ifndef VSPLIT_READS_ONLY
+VSPLIT_INSTANTIATE(RangeEncoder)
 VSPLIT_INSTANTIATE(NoCoder)
+#endif
 #undef VSPLIT_INSTANTIATE
 
 }  // namespace vsplit

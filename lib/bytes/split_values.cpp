@@ -492,9 +492,11 @@ void SplitCodec::apply(const SplitPlan& plan) {
                                         SplitPlan&);                                                     \
     template const char* SplitCodec::code_extra_moves(Coder&, const SplitPlan&, SplitPlan&);             \
     template const char* SplitCodec::code_triangles(Coder&, const SplitPlan&, SplitPlan&);
-VSPLIT_INSTANTIATE(RangeEncoder)
 VSPLIT_INSTANTIATE(RangeDecoder)
+#ifndef VSPLIT_READS_ONLY
+VSPLIT_INSTANTIATE(RangeEncoder)
 VSPLIT_INSTANTIATE(NoCoder)
+#endif
 #undef VSPLIT_INSTANTIATE
 
 }  // namespace vsplit

@@ -80,10 +80,11 @@ void add_speed(std::vector<SummaryRow>& rows, const Speed& s) {
     if (const double reached = over(s.meshoptimizer.triangles, double(s.triangles)); reached > 0.0105)
         rows.back().measured += fmt::format(" (it stops at {:.1f} %)", 100 * reached);
 
-    const double wall = over(s.record_two_threads.wall_seconds, one.wall_seconds);
+    // The least of the runs: what else the machine does only adds, and to two threads more.
+    const double wall = over(s.record_two_threads.wall_least, one.wall_least);
     const bool same = !one.fingerprint.empty() && one.fingerprint != "differs" &&
                       one.fingerprint == s.record_two_threads.fingerprint;
-    rows.push_back(row_of("wall on two threads over one" + on, wall,
+    rows.push_back(row_of("wall on two threads over one, least of the runs" + on, wall,
                           cell(wall, "{:.2f}", why.empty() ? s.record_two_threads.reason : why),
                           {0.9, 0.55}));
     rows.push_back({"the same record on one thread and on two" + on,
