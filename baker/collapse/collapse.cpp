@@ -65,7 +65,7 @@ Result<CollapseResult> collapse(const Mesh& mesh, const CollapseOptions& options
     if (put_off || options.calibrate) {
         std::vector<float> deviations = measure_collapses(result.mesh, progress);
         if (deviations.size() != result.mesh.splits.size()) return cancelled;
-        if (put_off) put_off_outliers(result.mesh, deviations);
+        if (put_off) put_off_outliers(result.mesh, deviations, options.placement == Placement::kEndpoint);
         if (options.calibrate && !bound_errors(result.mesh, deviations, progress)) return cancelled;
     }
     if (copies.any()) copies.expand(result.mesh);

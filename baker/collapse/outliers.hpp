@@ -15,6 +15,7 @@ namespace vsplit::bake {
 /// allows it, with what depends on them; others come earlier in their stead. Every collapse stays as it was,
 /// star and all; only their order changes. `deviations` are those of the splits (measure_collapses()), and
 /// change their order with them; recorded errors stay the largest so far of what was recorded.
-void put_off_outliers(ProgressiveMesh& mesh, std::vector<float>& deviations);
+/// With `batches`, those of a record made in batches stay together.
+void put_off_outliers(ProgressiveMesh& mesh, std::vector<float>& deviations, bool batches);
 
 }  // namespace vsplit::bake
