@@ -104,6 +104,11 @@ def log2(x):
     return 256 * top + LOG_FRACTIONS[(x >> (top - 10) if top >= 10 else x << (10 - top)) & 1023]
 
 
+def log2_linear(x):
+    top = x.bit_length() - 1
+    return 256 * top + ((x << 8 >> top) & 255)
+
+
 ROOTS = [1076653033, 1079572136, 1085434106, 1097253708, 1121280436, 1170923762, 1276901417, 1518500250]
 
 
@@ -116,6 +121,12 @@ def _power(i):
 
 
 POWERS = [_power(i) for i in range(256)]
+
+
+def share(below):
+    i = min(below >> 7, 511)
+    octaves = (i + 31) // 32
+    return min(2 * POWERS[8 * (32 * octaves - i)] >> octaves, 65535)
 
 
 def half_octave(x):
@@ -273,9 +284,14 @@ class Residual:
             read = 2 * read + coder.bit(second[0])
         if count > 2:
             read = 2 * read + coder.bit(second[read - 1])
-        if count > 3:
-            read = read << (count - 3) | coder.raw(count - 3)
-        return -read if (coder.raw(1) if side is None else coder.bit(self.sign[side])) else read
+        rest = max(count - 3, 0)
+        if side is None:
+            raw = coder.raw(rest + 1)
+        else:
+            raw = coder.raw(rest) << 1
+            raw |= coder.bit(self.sign[side])
+        read = read << rest | raw >> 1
+        return -read if raw & 1 else read
 
 
 # ---- Header, details, table
@@ -449,8 +465,8 @@ class Cuts:
         count = len(ring)
         spoke = [[live.at[v][a] - live.at[star.centre][a] for a in range(3)] for v in ring]
         square = [sum(x * x for x in s) + 1 for s in spoke]
-        length_log = [log2(s) for s in square]
-        mean = log2(sum(square)) - log2(count)
+        length_log = [log2_linear(s) for s in square]
+        mean = log2_linear(sum(square)) - log2_linear(count)
         edge, chord = [], []
         for i, v in enumerate(ring):
             valence = min(max(len(live.star[v]), 2), 9) - 2
@@ -459,52 +475,57 @@ class Cuts:
                 chord.append(9)
             else:
                 across = sum((a - b) ** 2 for a, b in zip(spoke[(i + 1) % count], spoke[i - 1])) + 1
-                chord.append(ratio_class(log2(across) - length_log[i] - 256))
+                chord.append(ratio_class(log2_linear(across) - length_log[i] - 256))
 
         first_wing = last_wing = True
         if not closed and not coder.bit(self.both[min(n, 7)]):
             last_wing = bool(coder.bit(self.last))
             first_wing = not last_wing
         family = 0 if closed else 1 if first_wing and last_wing else 2
-        child = lambda i: 9 * self.edge[edge[i % count]].child + 4 * self.chord[chord[i % count]].child
-        wing = lambda i: 9 * self.edge[edge[i % count]].wing + 4 * self.chord[chord[i % count]].wing
+        wing = [9 * self.edge[e].wing + 4 * self.chord[c].wing for e, c in zip(edge, chord)]
+        child = [9 * self.edge[e].child + 4 * self.chord[c].child for e, c in zip(edge, chord)]
+        is_wing = [share(max(wing) - w) for w in wing]
+        is_child = [share(max(child) - c) for c in child]
         lengths = self.lengths[family][min(n, 16)]
         scaled = lambda length: length if n <= 16 else length * 16 // n
-        runs, scores = [], []
-        for length in range(0 if family == 2 else 1, n if closed else n + 1):
+        shortest, longest = 0 if family == 2 else 1, n - 1 if closed else n
+        score = {length: 16 * log2(lengths[scaled(length)]) + (length - shortest) * max(child)
+                 for length in range(shortest, longest + 1)}
+        shift = 0 if n <= 8 else 2 if n <= 16 else 4
+        runs, weights = [], []
+        for length in range(shortest, longest + 1):
             if family == 2:
-                begins = [count - 1 - length if first_wing else 0]
+                begins = [n - length if first_wing else 0]
             else:
                 begins = range(n if closed else n + 1 - length)
             for begin in begins:
                 end = begin + length
                 if any(max(ring[i % count], ring[(i + 1) % count]) >= born_from for i in range(begin, end)):
                     continue
-                score = 16 * log2(lengths[scaled(length)])
-                score += (wing(begin) if first_wing else 0) + (wing(end) if last_wing else 0)
-                score += sum(child(i) for i in range(begin + 1 if first_wing else begin, end if last_wing else end + 1))
+                if family == 2:
+                    weight, last = 65535, begin if first_wing else end
+                    inner = range(n, begin, -1) if first_wing else range(end)
+                else:
+                    weight, last, inner = is_wing[begin], end % count, range(begin + 1, end)
+                for i in inner:
+                    weight = weight * is_child[i % count] >> 16
+                weight = (weight * is_wing[last] >> 16) * share(max(score.values()) - score[length]) >> 16
                 runs.append((begin, length))
-                scores.append(score)
-        weights = []
-        for score in scores:
-            below = min((max(scores) - score) >> 7, 384)
-            octaves = (below + 31) // 32
-            weights.append(max(1, POWERS[8 * (32 * octaves - below)] >> (3 + octaves)))
+                weights.append((weight >> shift) + 1)
         if not runs:
             raise Bad('a run has no place in its fan')
         begin, length = runs[coder.pick(weights)]
 
+        roles = [0] * count
+        for i in range(begin, begin + length + 1):
+            roles[i % count] = 2
+        if first_wing:
+            roles[begin] = 1
+        if last_wing:
+            roles[(begin + length) % count] = 1
         for i in range(count):
-            after = i - begin if i >= begin else i + n - begin
-            role = 2 if 0 < after < length else 0
-            if after == 0:
-                role = 1 if first_wing else 2
-            if after == length and (closed or i >= begin):
-                role = 1 if last_wing else 2
-            if not closed and i < begin:
-                role = 0
-            self.edge[edge[i]].saw(role)
-            self.chord[chord[i]].saw(role)
+            self.edge[edge[i]].saw(roles[i])
+            self.chord[chord[i]].saw(roles[i])
         lengths[scaled(length)] += 4
         if lengths[scaled(length)] > 4000:
             lengths[:] = [c >> 1 | 1 for c in lengths]
@@ -611,8 +632,8 @@ class Places:
         leans = 2 * min(max(rise - mean_scale + 11, 0), 11) + sinks
         slide = 0
         if normal[c] != 0:
-            side = sum((16 * (out[x] - origin[x]) - across[x]) * normal[x] for x in (a, b))
-            slide = quotient(side, normal[c]) if normal[c] > 0 else quotient(-side, -normal[c])
+            along_plane = sum((16 * (out[x] - origin[x]) - across[x]) * normal[x] for x in (a, b))
+            slide = quotient(along_plane, normal[c]) if normal[c] > 0 else quotient(-along_plane, -normal[c])
         at_c = within(origin[c] + ((across[c] - slide + 8) >> 4))
         out[c] = within(at_c + self.third[kind].decode(coder, flatness, missed, leans))
         return out
@@ -675,7 +696,8 @@ class Decoder:
         self.marked, self.unmarked, self.error, self.gap = Number(), Number(), Number(), Number()
 
         bits = lambda n: [Bit() for _ in range(n)]
-        self.one_birth, self.regular, self.place_moves, self.same_move, self.same_place = (bits(2) for _ in range(5))
+        self.plain, self.one_birth, self.regular, self.place_moves, self.same_move, self.same_place = (
+            bits(2) for _ in range(6))
         self.rough = bits(2)
         self.implied, self.group_stays, self.in_mask, self.moved, self.twin_moved = \
             Bit(), Bit(), Bit(), bits(3), bits(2)
@@ -794,6 +816,10 @@ class Decoder:
 
     def decode_split(self, coder, primary):
         live, marked = self.live, primary != NONE
+        if marked:
+            star = Star(live, primary)
+            if star.fan and coder.bit(self.plain[star.closed]):
+                return self.decode_plain(coder, primary, star)
         count = 1 if coder.bit(self.one_birth[marked]) else self.births.decode(coder)
         births, taken, moves, implied = [], [], [], []     # births: parent, place, finer, values; moves: the same
         for index in range(count):
@@ -857,6 +883,21 @@ class Decoder:
             if self.group_bits:
                 groups.append(self.decode_group(coder, self.last_group))
         self.make_split(births, taken, moves, triangles, groups)
+
+    def decode_plain(self, coder, parent, star):
+        taken, moves, implied = [], [], []
+        run = self.cuts.decode(coder, self.live, star, self.older if self.kind else NONE)
+        child_ring, parent_ring = self.take_run(star, run, len(self.live.at), taken, implied)
+        moving = coder.bit(self.moved[0])
+        rough = moving and not self.file.lossless and coder.bit(self.rough[0])
+        place = self.places.decode(coder, self.live, 1 if moving else 0, parent, child_ring, not (run[2] and run[3]), rough)
+        finer = self.decode_finer(coder)
+        self.last_place = place
+        values = self.decode_values(coder, *self.predict_values(parent, child_ring, []))
+        if moving:
+            self.decode_move(coder, parent, (parent_ring, not star.closed, place), moves)
+        groups = [self.decode_group(coder, group) for _, group in implied] if self.group_bits else []
+        self.make_split([(parent, place, finer, values)], taken, moves, [t for t, _ in implied], groups)
 
     def decode_parent(self, coder, primary, index, births):
         if index == 0 and primary != NONE:

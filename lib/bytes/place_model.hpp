@@ -34,6 +34,8 @@ struct PlaceGuides {
     std::uint32_t ring_class = 0;
     Lattice3 from{};  ///< The parent's old place.
     std::array<std::array<std::int32_t, 3>, kPlaceGuides> guide{};
+    /// What the weights make of them: along the surface, and the point on the plane that it is coded across.
+    std::array<std::int64_t, 3> along{}, beyond{};
     std::array<std::int64_t, 3>
         normal{};            ///< Of the ring's polygon; its largest component is that of `across`.
     std::size_t across = 2;  ///< The axis coded last.
@@ -69,9 +71,9 @@ class PlaceModel {
     Lattice3 code_free(Coder& coder, const Lattice3& near, const Lattice3& place);
 
   private:
-    /// The point that the weights of `row` (0 along, 1 across) make of the guides, in 1/16.
-    std::array<std::int64_t, 3> mix(const PlaceGuides& guides, std::size_t row) const;
-    void measure(const LiveStars& mesh, const Ring& ring, const Lattice3& extra, PlaceGuides& guides) const;
+    struct Around;
+    static void look_around(const LiveStars& mesh, const Ring& ring, const Lattice3& from, Around& around);
+    void measure(const Around& around, std::uint32_t count, PlaceGuides& guides) const;
 
     PlaceWeights weights_;
     ResidualModel<56, 6> first_[kPlaceKinds];
@@ -105,7 +107,7 @@ Lattice3 PlaceModel::code(Coder& coder, PlaceGuides& g, const Lattice3& place, b
     if (!Coder::kWrites && !Coder::kDecodes && !rough) return place;
     const std::size_t c = g.across, a = c == 0 ? 1 : 0, b = c == 2 ? 1 : 2,
                       kind = static_cast<std::size_t>(g.kind);
-    const auto along = mix(g, 0), across = mix(g, 1);
+    const auto &along = g.along, &across = g.beyond;
     Lattice3 out{};
     const auto predicted = [&](std::size_t axis) {
         return within_reach(g.from[axis] + ((along[axis] + 8) >> 4));

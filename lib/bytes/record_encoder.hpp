@@ -63,6 +63,8 @@ class RecordEncoder {
     };
 
     void plan(std::uint32_t split, SplitPlan& out);
+    /// Has the memory read ahead that the steps after this one need.
+    void fetch(const Sweep& sweep, std::size_t step) const;
     std::uint32_t last_move(std::uint32_t vertex, const Split& from, const Split& to) const;
     void learn_numbers(const SplitPlan& wanted, const SplitPlan& coded);
     Split before(std::uint32_t split) const;

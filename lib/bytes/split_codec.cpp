@@ -8,16 +8,6 @@
 #include "place_fit.hpp"
 
 namespace vsplit {
-namespace {
-
-bool same_rotated(const Triangle& a, const Triangle& b) {
-    for (std::size_t k = 0; k < 3; ++k)
-        if (a[0] == b[k] && a[1] == b[(k + 1) % 3] && a[2] == b[(k + 2) % 3]) return true;
-    return false;
-}
-
-}  // namespace
-
 void SplitPlan::clear() {
     births.clear();
     taken.clear();
@@ -108,6 +98,8 @@ const char* SplitCodec::code_mark(Coder& coder, std::uint32_t& primary) {
     if (is_batch()) {
         for (; cursor_ < older_; ++cursor_) {
             if (kind_ == SweepKind::kBatch && unlocked(live.vertices[cursor_]) == 0) continue;
+            if (cursor_ + 8 < older_) live.fetch(cursor_ + 8, 0);
+            if (cursor_ + 4 < older_) live.fetch(cursor_ + 4, 1);
             if (!ask_batch(coder, cursor_, cursor_ == primary)) continue;
             primary = cursor_;
             return nullptr;
@@ -115,14 +107,12 @@ const char* SplitCodec::code_mark(Coder& coder, std::uint32_t& primary) {
         return "a sweep marks fewer vertices than it announces";
     }
     for (std::uint32_t v; (v = asks_.next()) != kNoVertex;) {
-        // What the next in line need comes from memory meanwhile: the list of the seventh, the triangles of
-        // the fourth, the ring of the second.
+        // What the next in line need comes from memory meanwhile: the list of the seventh, the ring of the
+        // fourth.
         std::uint64_t line = asks_.after(v);
         for (int i = 1; line != 0 && i <= 7; ++i, line &= line - 1)
-            if (i == 2 || i == 4 || i == 7)
-                live.fetch(v + 1 + static_cast<std::uint32_t>(std::countr_zero(line)), i == 2   ? 2
-                                                                                       : i == 4 ? 1
-                                                                                                : 0);
+            if (i == 4 || i == 7)
+                live.fetch(v + 1 + static_cast<std::uint32_t>(std::countr_zero(line)), i == 4 ? 1 : 0);
         if (ask(coder, v, v == primary)) {
             primary = v;
             return nullptr;
@@ -139,7 +129,19 @@ const char* SplitCodec::code_split(Coder& coder, std::uint32_t primary, const Sp
     out.clear();
     implied_triangles_.clear();
     implied_groups_.clear();
+    is_plain_ = false;
+    if (++fits_ >= fit_every) fits_ = 0;
     const bool marked = primary != kNoVertex;
+    if (marked) {
+        live.gather(primary, star_);
+        if (star_.fan) {
+            Cut cut;
+            is_plain_ = coder.bit(plain_[star_.closed],
+                                  !Coder::kDecodes && find_plain(primary, wanted, cut, out.sources));
+            live.fetch(star_);
+            if (is_plain_) return code_plain(coder, primary, cut, wanted, out);
+        }
+    }
     auto births = static_cast<std::uint32_t>(wanted.births.size());
     births = coder.bit(one_birth_[marked], births == 1) ? 1 : births_.code(coder, births);
     if (marked && births == 0) return "a marked split bears no vertex";
@@ -235,79 +237,6 @@ const char* SplitCodec::code_parent(Coder& coder, std::uint32_t primary, const S
         parent = alive - 1 - which;
     }
     return nullptr;
-}
-
-bool SplitCodec::find_cut(std::span<const std::uint32_t> taken, const SplitPlan& wanted, std::uint32_t child,
-                          Cut& cut) const {
-    const std::uint32_t n = star_.size, k = static_cast<std::uint32_t>(taken.size());
-    std::uint32_t in = 0;
-    for (std::uint32_t i = 0; i < n; ++i)
-        for (const std::uint32_t corner : taken)
-            if (corner == star_.corner[i]) in |= 1u << i;
-    const auto has = [&](std::uint32_t i) { return (in >> i & 1) != 0; };
-    const auto born = [&](const Triangle& triangle) {
-        return std::any_of(wanted.triangles.begin(), wanted.triangles.end(),
-                           [&](const Triangle& t) { return same_rotated(t, triangle); });
-    };
-    cut.length = k;
-    cut.begin = 0;
-    if (star_.closed) {
-        if (k == 0 || k == n) return false;
-        while (!(has(cut.begin) && !has((cut.begin + n - 1) % n))) ++cut.begin;
-        for (std::uint32_t i = 0; i < k; ++i)
-            if (!has((cut.begin + i) % n)) return false;
-        cut.first_wing = cut.last_wing = true;
-        return true;
-    }
-    const std::uint32_t p = star_.centre;
-    if (k == 0) {
-        cut.last_wing = born({child, star_.ring[0], p});
-        cut.first_wing = !cut.last_wing && born({child, p, star_.ring[n]});
-        if (cut.first_wing) cut.begin = n;
-        return cut.last_wing || cut.first_wing;
-    }
-    while (!has(cut.begin)) ++cut.begin;
-    for (std::uint32_t i = 0; i < k; ++i)
-        if (!has(cut.begin + i)) return false;
-    const bool first = born({child, p, star_.ring[cut.begin]}),
-               last = born({child, star_.ring[cut.begin + k], p});
-    cut.first_wing = cut.last_wing = true;
-    if (last && !first && cut.begin == 0) cut.first_wing = false;
-    if (first && !last && cut.begin + k == n) cut.last_wing = false;
-    return true;
-}
-
-void SplitCodec::take_run(std::uint32_t child, SplitPlan& out) {
-    const std::uint32_t n = star_.size, p = star_.centre, begin = run_.begin, end = begin + run_.length;
-    const std::size_t before = out.taken.size();
-    for (std::uint32_t i = begin; i < end; ++i) out.taken.push_back(star_.corner[i >= n ? i - n : i]);
-    std::sort(out.taken.begin() + static_cast<std::ptrdiff_t>(before), out.taken.end());
-    const auto group_of = [&](std::uint32_t i) {
-        return groups.empty() ? 0 : groups[star_.corner[star_.closed && i >= n ? i - n : i] / 3];
-    };
-    if (run_.last_wing) {
-        implied_triangles_.push_back({child, star_.ring_at(end >= n && star_.closed ? end - n : end), p});
-        implied_groups_.push_back(group_of(end > 0 ? end - 1 : 0));
-    }
-    if (run_.first_wing) {
-        implied_triangles_.push_back({child, p, star_.ring[begin]});
-        implied_groups_.push_back(group_of(begin < n ? begin : n - 1));
-    }
-    // The rings around the child and around what the parent keeps, without each other.
-    child_ring_.size = parent_ring_.size = 0;
-    for (std::uint32_t i = begin; i <= end; ++i)
-        child_ring_.vertex[child_ring_.size++] = star_.ring[star_.closed && i >= n ? i - n : i];
-    child_ring_.open = !(run_.first_wing && run_.last_wing);
-    parent_ring_.open = !star_.closed;
-    if (star_.closed) {
-        for (std::uint32_t i = end; i <= begin + n; ++i)
-            parent_ring_.vertex[parent_ring_.size++] = star_.ring[i % n];
-    } else {
-        for (std::uint32_t i = run_.last_wing ? end : n + 1; i <= n; ++i)
-            parent_ring_.vertex[parent_ring_.size++] = star_.ring[i];
-        for (std::uint32_t i = 0; i < (run_.first_wing ? begin + 1 : 0); ++i)
-            parent_ring_.vertex[parent_ring_.size++] = star_.ring[i];
-    }
 }
 
 template <class Coder>

@@ -15,6 +15,8 @@ namespace vsplit {
 namespace {
 
 constexpr std::uint32_t kLosslessLatticeBits = 18;
+/// About so many splits tell the weights of prediction.
+constexpr std::size_t kFitted = 1 << 16;
 
 /// Blocks of fewer bytes would pay more for their place in the table.
 constexpr std::size_t kLeastBlock = 1024;
@@ -87,6 +89,7 @@ Result<Encoded> encode(const ProgressiveMesh& mesh, const WriteOptions& options)
         NoCoder look;
         RecordEncoder first(mesh, numbers, sweeps);
         first.codec().fit = &fit;
+        first.codec().fit_every = static_cast<std::uint32_t>(mesh.splits.size() / kFitted + 1);
         first.code_splits(look, [](const SplitPlan&, float, bool) {});
     }
     numbers.details.weights = fit.solve();

@@ -4,6 +4,7 @@
 // A glTF scene taken apart for baking, and put together again around other geometry (docs/lods.md).
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -73,6 +74,29 @@ struct Scene {
 /// A scene without a triangle is kMalformed.
 Result<Scene> parse_scene(std::span<const std::byte> bytes, const std::string& folder,
                           const GltfOptions& options = {});
+
+/// Where a node of the scene that the document shows has a part.
+struct ScenePlace {
+    std::uint32_t part = 0;
+    std::array<double, 16> matrix{};  ///< From coordinates of Scene::mesh to the world, column by column.
+};
+
+/// All places in the order of the nodes, parents first; of a skinned part, where its first joint puts it.
+/// Instances of EXT_mesh_gpu_instancing count as one.
+std::vector<ScenePlace> scene_places(const Scene& scene);
+
+/// What a primitive looks like, as far as a preview needs it.
+struct SceneMaterial {
+    std::uint32_t number = 0xFFFFFFFFu;  ///< In the document; the default if the primitive names none.
+    std::string name;                    ///< May be empty.
+    std::array<float, 4> base_color{1, 1, 1, 1};  ///< Linear; times the image, if there is one.
+    std::span<const std::byte> image{};  ///< PNG, JPEG or another format, as stored; of the scene's document.
+    std::uint32_t image_number = 0xFFFFFFFFu;
+    std::uint32_t texcoord = 0;  ///< The set that the image is looked up by.
+};
+
+/// One for each of Scene::primitives. Images outside of the document are not read.
+std::vector<SceneMaterial> scene_materials(const Scene& scene);
 
 /// A scene of one node around a mesh that came without one, as from a .pmesh: a primitive and a plain
 /// material a group, attributes as floats. Its `mesh` has the attributes' names only.
