@@ -52,7 +52,7 @@ TEST_CASE("Collapse: with placement at endpoints, splits come in batches and no 
             REQUIRE(result.ok());
             const ProgressiveMesh& record = result->mesh;
             if (mesh.weights.empty() && mesh.attributes.empty()) CHECK(record.moves.empty());
-            if (record.splits.size() < 200) continue;
+            if (record.splits.size() < 150) continue;
             ++large;
             const std::size_t doublings =
                 std::bit_width(record.positions.size() / std::max(record.base_vertices, 1u));
