@@ -60,7 +60,7 @@ class Keys {
 
 }  // namespace
 
-void put_off_outliers(ProgressiveMesh& mesh, std::vector<float>& deviations) {
+std::vector<std::uint32_t> put_off_outliers(ProgressiveMesh& mesh, std::vector<float>& deviations) {
     const std::size_t count = mesh.splits.size();
     std::vector<std::uint32_t> keys;
     {
@@ -83,6 +83,7 @@ void put_off_outliers(ProgressiveMesh& mesh, std::vector<float>& deviations) {
     std::vector<float> moved(count);
     for (std::size_t i = 0; i < count; ++i) moved[i] = deviations[order[i]];
     deviations.swap(moved);
+    return order;
 }
 
 }  // namespace vsplit::bake
