@@ -7,10 +7,13 @@ install(TARGETS vsplit EXPORT vsplit-targets)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/lib/include/vsplit DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(EXPORT vsplit-targets NAMESPACE vsplit:: DESTINATION ${vsplit_package})
 # What a static archive needs when a stranger links it, and nothing of the baker.
+if(VSPLIT_WITH_DRACO)
+  set(vsplit_find_draco "find_dependency(draco CONFIG)\n")
+  set(vsplit_link_draco "-ldraco ")
+endif()
 file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/vsplit-config.cmake @ONLY CONTENT
 "include(CMakeFindDependencyMacro)
-find_dependency(draco CONFIG)
-include(\${CMAKE_CURRENT_LIST_DIR}/vsplit-targets.cmake)
+@vsplit_find_draco@include(\${CMAKE_CURRENT_LIST_DIR}/vsplit-targets.cmake)
 ")
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/vsplit-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/vsplit-config.cmake ${PROJECT_BINARY_DIR}/vsplit-config-version.cmake
@@ -24,7 +27,7 @@ Description: @PROJECT_DESCRIPTION@
 Version: @PROJECT_VERSION@
 Cflags: -I\${prefix}/@CMAKE_INSTALL_INCLUDEDIR@
 Libs: -L\${prefix}/@CMAKE_INSTALL_LIBDIR@ -lvsplit
-Libs.private: -ldraco -lstdc++ -lm
+Libs.private: @vsplit_link_draco@-lstdc++ -lm
 ")
 install(FILES ${PROJECT_BINARY_DIR}/vsplit.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSES/MIT.txt DESTINATION ${CMAKE_INSTALL_DOCDIR})

@@ -94,7 +94,10 @@ void annotate_file(std::span<const std::byte> bytes, const FileInfo& info) {
     a.checksum("the details");
     for (const char* what : {"origin x", "origin y", "origin z"}) a.f64(what);
     a.checksum("the header");
-    a.part(126, "weights of prediction");
+    const std::uint32_t kinds = a.next_byte(0);
+    a.u8("kinds of prediction with weights");
+    for (std::uint32_t kind = 0; kind < 3; ++kind)
+        if (kinds >> kind & 1) a.part(42, fmt::format("weights of prediction, kind {}", kind));
     a.u16("attributes");
     for (const AttributeInfo& attribute : info.attributes) {
         const std::uint32_t components = a.next_byte(1), coding = a.next_byte(2);

@@ -151,7 +151,7 @@ Result<CollapseResult> collapse(const Mesh& mesh, const CollapseOptions& options
         if (put_off) {
             const std::vector<Split> before =
                 extras.births.empty() ? std::vector<Split>() : result.mesh.splits;
-            order = put_off_outliers(result.mesh, deviations);
+            order = put_off_outliers(result.mesh, deviations, options.placement == Placement::kEndpoint);
             if (!before.empty()) renumber(extras.births, result.mesh.base_vertices, before, order);
         }
         if (options.calibrate && !bound_errors(result.mesh, deviations, progress)) return cancelled;

@@ -26,6 +26,13 @@ constexpr std::uint32_t kRounds = 32;
 /// Clearly less than what a part's vanishing costs: a quarter of it.
 constexpr Bucket kWellBelow = 2 * kBucketsPerOctave;
 
+/// The share of the waiting vertices whose costs a batch spans: small meshes lose their shape sooner.
+double batch_quantile(std::uint32_t vertices) {
+    constexpr double kSmall = 1000, kLarge = 20000, kLeast = 0.35, kMost = 0.8;
+    const double t = std::clamp(std::log(vertices / kSmall) / std::log(kLarge / kSmall), 0.0, 1.0);
+    return kLeast + t * (kMost - kLeast);
+}
+
 double seconds_now() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
@@ -86,6 +93,7 @@ void Collapser::prepare(const Mesh& mesh) {
         state_.weights.reserve(state_.mesh.vertex_count());
         for (const std::uint32_t v : state_.mesh.input_vertices()) state_.weights.push_back(mesh.weights[v]);
     }
+    if (options.placement == Placement::kEndpoint) state_.batch_of.assign(state_.mesh.vertex_count(), 0);
     lock();
     for (std::uint32_t v = 0; v < state_.mesh.vertex_count() && state_.components.count() > 1; ++v)
         if (state_.mesh.kind(v) != VertexKind::kDead && !state_.weights.empty() && state_.weights[v] > 1)
@@ -183,6 +191,13 @@ std::pair<Bucket, Bucket> Collapser::next_window(Bucket limit) const {
     Bucket end = begin;
     while (end < limit && (end < begin + kBucketsPerOctave || count < state_.mesh.live_vertices() / kRounds))
         count += waiting[end++];
+    if (state_.batch_of.empty()) return {begin, end};
+    // A batch takes what is cheap now: what it does not reach will have other costs when it is done.
+    const double q = batch_quantile(state_.mesh.live_vertices());
+    std::uint64_t all = 0;
+    for (Bucket b = begin; b < limit; ++b) all += waiting[b];
+    std::uint64_t reached = 0;
+    for (end = begin; end < limit && double(reached) < q * double(all);) reached += waiting[end++];
     return {begin, end};
 }
 
@@ -280,6 +295,7 @@ bool Collapser::rounds(Bucket limit, const Between& between) {
             std::erase_if(alive_, [&](std::uint32_t v) { return mesh.kind(v) == VertexKind::kDead; });
         const auto [begin, end] = next_window(limit);
         if (begin == end) return true;
+        ++state_.batch;
         state_.mean_star = 12 * state_.area / std::max(mesh.live_triangles(), 1u);
         if (!between() || !round(begin, end, rounds_, between)) return false;
     }

@@ -58,9 +58,80 @@ class Keys {
     std::vector<std::uint32_t> around_;
 };
 
+/// The same for a record made in batches, by whole batches: 0 is the first.
+class BatchKeys {
+  public:
+    explicit BatchKeys(const ProgressiveMesh& mesh)
+        : mesh_(mesh),
+          changed_(mesh.positions.size(), 0),
+          locked_(mesh.positions.size(), 0),
+          moved_(mesh.positions.size(), 0) {}
+
+    std::vector<std::uint32_t> of(const std::vector<float>& deviations, const std::vector<float>& allowed) {
+        const std::size_t count = deviations.size();
+        std::vector<std::uint32_t> keys(count), batch(count);  // the second by rank
+        find_batches(batch);
+        Unsplitter walk(mesh_);
+        while (walk.splits_left() != 0) {
+            const std::uint32_t split = walk.step();
+            const std::size_t rank = count - 1 - split;
+            const auto when =
+                std::lower_bound(allowed.begin() + std::ptrdiff_t(rank), allowed.end(), deviations[split]) -
+                allowed.begin();
+            keys[split] = spread(walk, std::max(batch[rank], batch[std::min(std::size_t(when), count - 1)]));
+        }
+        return keys;
+    }
+
+  private:
+    /// A batch is as long as it can be: until a vertex goes whose star has changed in it.
+    void find_batches(std::vector<std::uint32_t>& batch) {
+        Unsplitter walk(mesh_);
+        std::uint32_t now = 1;
+        for (std::uint32_t& number : batch) {
+            walk.step();
+            for (std::uint32_t v = walk.gone_begin(); v < walk.gone_end(); ++v)
+                if (changed_[v] == now) {
+                    ++now;
+                    break;
+                }
+            each_around(walk, [&](std::uint32_t v) { changed_[v] = now; });
+            number = now;
+        }
+    }
+    std::uint32_t spread(const Unsplitter& walk, std::uint32_t key) {
+        const std::uint32_t split = walk.splits_left();
+        const std::uint32_t first = split == 0 ? 0 : mesh_.splits[split - 1].moves_end,
+                            last = mesh_.splits[split].moves_end;
+        for (std::uint32_t v = walk.gone_begin(); v < walk.gone_end(); ++v)
+            key = std::max({key, locked_[v] + 1, moved_[v]});
+        // What moves a vertex says where it is: that keeps its order.
+        for (std::uint32_t m = first; m < last; ++m) key = std::max(key, moved_[mesh_.moves[m].vertex]);
+        for (std::uint32_t m = first; m < last; ++m) moved_[mesh_.moves[m].vertex] = key;
+        each_around(walk, [&](std::uint32_t v) { locked_[v] = std::max(locked_[v], key); });
+        return key;
+    }
+    /// The vertices around those that went with the last step.
+    template <class Visit>
+    void each_around(const Unsplitter& walk, const Visit& visit) const {
+        const std::uint32_t split = walk.splits_left();
+        for (std::uint32_t c = split == 0 ? 0 : mesh_.splits[split - 1].corners_end;
+             c < mesh_.splits[split].corners_end; ++c)
+            for (const std::uint32_t v : walk.triangle(mesh_.corner_changes[c].corner / 3)) visit(v);
+        for (std::uint32_t t = walk.removed_begin(); t < walk.removed_end(); ++t)
+            for (const std::uint32_t v : walk.triangle(t)) visit(v);
+    }
+
+    const ProgressiveMesh& mesh_;
+    std::vector<std::uint32_t> changed_;  ///< Per vertex: the last batch that changed its star.
+    std::vector<std::uint32_t> locked_;   ///< The largest key of those that did.
+    std::vector<std::uint32_t> moved_;    ///< The largest of those that moved it.
+};
+
 }  // namespace
 
-std::vector<std::uint32_t> put_off_outliers(ProgressiveMesh& mesh, std::vector<float>& deviations) {
+std::vector<std::uint32_t> put_off_outliers(ProgressiveMesh& mesh, std::vector<float>& deviations,
+                                            bool batches) {
     const std::size_t count = mesh.splits.size();
     std::vector<std::uint32_t> keys;
     {
@@ -68,7 +139,7 @@ std::vector<std::uint32_t> put_off_outliers(ProgressiveMesh& mesh, std::vector<f
         const std::vector<float> by_rank(deviations.rbegin(), deviations.rend());
         Tail tail(mesh.positions.size());
         for (std::size_t rank = 0; rank < count; ++rank) allowed[rank] = float(tail.at(by_rank, rank));
-        keys = Keys(mesh).of(deviations, allowed);
+        keys = batches ? BatchKeys(mesh).of(deviations, allowed) : Keys(mesh).of(deviations, allowed);
     }
     std::vector<std::uint32_t> order(count);
     std::iota(order.begin(), order.end(), 0u);

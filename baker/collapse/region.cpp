@@ -14,6 +14,9 @@ namespace {
 /// What a fold costs more that the rules of topology or seams forbid.
 constexpr double kRelaxed = 4;
 
+/// What the square of a valence's excess counts in batches.
+constexpr double kIrregular = 0.4;
+
 std::uint32_t nearer_end(const EdgeStar& star, Double3 place) {
     return length2(place - star.pv) < length2(place - star.pu) ? star.v : star.u;
 }
@@ -182,6 +185,18 @@ void Region::list_edges(std::uint32_t u, EdgeList& list) const {
     price(u, list);
 }
 
+double Region::irregularity(const EdgeStar& star, std::uint32_t parent) const {
+    const std::uint32_t child = star.u + star.v - parent;
+    const auto excess = [](std::size_t is, std::size_t most) {
+        const double more = is > most ? double(is - most) : 0;
+        return more * more;
+    };
+    double sum = excess(mesh_.star(parent).size() + mesh_.star(child).size(), 12);
+    for (const std::uint32_t w : star.opposite)
+        if (mesh_.kind(w) == VertexKind::kInner) sum += excess(6, mesh_.star(w).size());
+    return 1 + kIrregular * sum;
+}
+
 Region::Outcome Region::attempt(std::uint32_t u, const Option& option, Bucket bucket, float& cost) {
     cost = kNeverCost;
     if (!is_whole() && !star_inside(option.other)) return Outcome::kElsewhere;
@@ -196,9 +211,18 @@ Region::Outcome Region::attempt(std::uint32_t u, const Option& option, Bucket bu
     } else {
         relaxed = !state_.paper && fold_rule(mesh_, u, option.other) == Fold::kNever;
     }
+    std::uint32_t parent = parent_of(star_, option);
+    if (!state_.batch_of.empty()) {
+        const std::uint32_t child = star_.u + star_.v - parent;
+        if (state_.locks(child)) {
+            cost = float(option.candidate.cost);
+            return Outcome::kNextBatch;
+        }
+    }
     const double weight = 0.5 * (double(mesh_.vertex(u).weight) + double(mesh_.vertex(option.other).weight));
-    if (mesh_.has_wedges()) wedge_star_.gather(mesh_, star_, parent_of(star_, option));
+    if (mesh_.has_wedges()) wedge_star_.gather(mesh_, star_, parent);
     Deviation deviation;
+    const double irregular = state_.batch_of.empty() ? 1 : irregularity(star_, parent);
     // What will be stored decides: the guards look at the rounded place.
     const auto judge = [&](const Float3& rounded, double geometric) {
         const Double3 place = mesh_.work(rounded);
@@ -212,7 +236,7 @@ Region::Outcome Region::attempt(std::uint32_t u, const Option& option, Bucket bu
         // The same dimension as the cost, so that one factor serves every level: area times distance^3.
         const double limit =
             state_.paper ? 0 : state_.options.deviation_limit * d * d * d * state_.mean_star * weight;
-        float total = float(std::max(geometric, limit) * (relaxed ? kRelaxed : 1));
+        float total = float(std::max(geometric, limit) * (relaxed ? kRelaxed : 1) * irregular);
         return total + float(weight * attributes.cost);
     };
     Float3 rounded = option.fold == Fold::kIntoFirst    ? mesh_.raw_position(u)
@@ -228,19 +252,28 @@ Region::Outcome Region::attempt(std::uint32_t u, const Option& option, Bucket bu
         Deviation chosen = best;
         Float3 place = rounded;
         bool moved = false;
+        // In a batch, the end whose place is kept is the parent.
+        const bool keeps_ends = !state_.batch_of.empty();
         for (const double side : {-1.0, 1.0}) {
             const auto end = edge.end(side);
-            const Float3& there = mesh_.raw_position(side < 0 ? u : option.other);
+            const std::uint32_t end_vertex = side < 0 ? u : option.other;
+            const Float3& there = mesh_.raw_position(end_vertex);
+            if (keeps_ends) {
+                if (state_.locks(u + option.other - end_vertex)) continue;
+                wedge_star_.gather(mesh_, star_, end_vertex);
+            }
             const float price = judge(there, edge.price(end.cost));
             moved = true;
             if (price >= cost) continue;
             cost = price;
             place = there;
+            if (keeps_ends) parent = end_vertex;
             chosen = deviation;
         }
         rounded = place;
         deviation = chosen;
         if (moved) star_.place_at(mesh_.work(rounded));
+        if (keeps_ends) wedge_star_.gather(mesh_, star_, parent);
     }
     if (bucket_of(cost) > bucket) return Outcome::kWaits;
     if (!is_whole()) {
@@ -253,7 +286,7 @@ Region::Outcome Region::attempt(std::uint32_t u, const Option& option, Bucket bu
     } else {
         mesh_.make_room(star_.size);
     }
-    apply(star_, option, rounded, deviation, relaxed);
+    apply(star_, option, parent, rounded, deviation, relaxed);
     return Outcome::kDone;
 }
 
@@ -278,6 +311,8 @@ void Region::fetch_around(const EdgeStar& star) const {
 std::uint32_t Region::parent_of(const EdgeStar& star, const Option& option) const {
     if (option.fold == Fold::kIntoFirst) return star.u;
     if (option.fold == Fold::kIntoSecond) return star.v;
+    // In a batch, the end whose place is kept is the parent: no vertex moves.
+    if (!state_.batch_of.empty()) return nearer_end(star, option.candidate.place);
     // A curve's vertex stays; else the one with the larger star, since the other's corners change.
     if (mesh_.kind(star.u) != mesh_.kind(star.v))
         return mesh_.kind(star.v) == VertexKind::kCurve ? star.v : star.u;
@@ -314,10 +349,14 @@ void Region::fold_wedges(const EdgeStar& star, Double3 place) {
                 state_.wedges->repose(wedge, mesh_.round(place), state_.wedges->of(wedge));
 }
 
-void Region::apply(const EdgeStar& star, const Option& option, Float3 place, const Deviation& deviation,
-                   bool relaxed) {
-    const std::uint32_t parent = parent_of(star, option), child = star.u + star.v - parent;
+void Region::apply(const EdgeStar& star, const Option& option, std::uint32_t parent, Float3 place,
+                   const Deviation& deviation, bool relaxed) {
+    const std::uint32_t child = star.u + star.v - parent;
     if (mesh_.has_wedges()) fold_wedges(star, mesh_.work(place));
+    if (!state_.batch_of.empty()) {
+        for (const std::uint32_t t : mesh_.star(child))
+            for (const std::uint32_t w : mesh_.triangle(t)) state_.batch_of[w] = state_.batch;
+    }
     const TrianglePart<double> part = update_ring(mesh_, star);
     const std::size_t before = record_.removed.size();
     const Float3 parent_position = mesh_.raw_position(parent);
@@ -450,6 +489,7 @@ void Region::process(std::uint32_t u, Bucket bucket) {
     // Most often the target is still the best; its price is that of today.
     std::uint32_t tried = kNoVertex;
     float tried_cost = kNeverCost;
+    bool next_batch = false;
     Target& target = state_.targets[u];
     if (target.vertex != kNoVertex && mesh_.kind(target.vertex) != VertexKind::kDead) {
         if (const Fold fold = fold_of(u, target.vertex); fold != Fold::kNever) {
@@ -460,6 +500,7 @@ void Region::process(std::uint32_t u, Bucket bucket) {
                 const Outcome outcome = attempt(u, option, bucket, tried_cost);
                 if (outcome == Outcome::kDone) return;
                 if (outcome == Outcome::kElsewhere) return put_off(u, bucket);
+                next_batch = outcome == Outcome::kNextBatch;
             } else if (cost <= target.runner_up) {
                 target.cost = cost;
                 queue_.push(u, bucket_of(cost));
@@ -481,13 +522,15 @@ void Region::process(std::uint32_t u, Bucket bucket) {
             const Outcome outcome = attempt(u, {v, fold, evaluate(u, v, fold)}, bucket, cost);
             if (outcome == Outcome::kDone) return;
             if (outcome == Outcome::kElsewhere) return put_off(u, bucket);
+            next_batch |= outcome == Outcome::kNextBatch;
         }
         wait.offer(v, cost);
         listed_.costs[at] = kNeverCost;  // not again
     }
     for (std::size_t i = 0; i < listed_.others.size(); ++i) wait.offer(listed_.others[i], listed_.costs[i]);
     target = wait;
-    if (wait.vertex != kNoVertex) queue_.push(u, bucket_of(wait.cost));
+    if (wait.vertex != kNoVertex)
+        queue_.push(u, std::max(bucket_of(wait.cost), next_batch ? end_ : Bucket{0}));
 }
 
 void Region::process_component(std::uint32_t component, Bucket bucket) {
@@ -504,6 +547,9 @@ void Region::process_component(std::uint32_t component, Bucket bucket) {
         return;
     }
     const auto vertices = state_.components.live_vertices(mesh_, component);
+    if (!state_.batch_of.empty() &&
+        std::any_of(vertices.begin(), vertices.end(), [&](std::uint32_t v) { return state_.locks(v); }))
+        return queue_.push(mesh_.vertex_count() + component, std::max(bucket, end_));
     std::vector<std::uint32_t> triangles;
     for (const std::uint32_t v : vertices) {
         const auto star = mesh_.star(v);

@@ -64,6 +64,12 @@ struct CollapseState {
     std::vector<float> weights;   ///< Empty: none painted.
     std::vector<Target> targets;  ///< kNoVertex: list all again.
     std::vector<Bucket> slots;    ///< Where each vertex waits, then each component.
+    /// With placement at endpoints, rounds are batches, in which no triangle changes twice: a vertex whose
+    /// star has changed may not go until the next. So splits of one batch do not depend on each other, and a
+    /// file need not tell their order. Per vertex, the last batch that changed its star; empty: no batches.
+    std::vector<std::uint32_t> batch_of;
+    std::uint32_t batch = 0;
+    bool locks(std::uint32_t v) const { return batch_of[v] == batch; }
 };
 
 /// What it costs now that a component vanishes, working units.
@@ -124,7 +130,7 @@ class Region {
         }
     };
 
-    enum class Outcome : std::uint8_t { kDone, kWaits, kElsewhere };
+    enum class Outcome : std::uint8_t { kDone, kWaits, kElsewhere, kNextBatch };
 
     /// Each edge is priced once: for the end that comes first, which waits in the queue with it.
     static bool owns(std::uint32_t u, std::uint32_t v) { return u < v; }
@@ -147,12 +153,15 @@ class Region {
     void fetch_around(const EdgeStar& star) const;
     void process(std::uint32_t u, Bucket bucket);
     void process_component(std::uint32_t component, Bucket bucket);
-    /// kWaits sets `cost` to what it has to wait for (infinity: never as things are).
+    /// kWaits sets `cost` to what it has to wait for (infinity: never as things are); kNextBatch to what it
+    /// costs.
     Outcome attempt(std::uint32_t u, const Option& option, Bucket bucket, float& cost);
+    /// What the valences that it makes count on top of a collapse's cost, as a factor from 1 on.
+    double irregularity(const EdgeStar& star, std::uint32_t parent) const;
     /// Which end stays.
     std::uint32_t parent_of(const EdgeStar& star, const Option& option) const;
-    void apply(const EdgeStar& star, const Option& option, Float3 place, const Deviation& deviation,
-               bool relaxed);
+    void apply(const EdgeStar& star, const Option& option, std::uint32_t parent, Float3 place,
+               const Deviation& deviation, bool relaxed);
     /// After a relaxed fold: the kinds of vertices are others now.
     void classify_around(const EdgeStar& star);
     /// After a collapse: prices the new vertex's edges, and offers them to those neighbours who own them.

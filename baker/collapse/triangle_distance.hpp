@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <limits>
 
 #include "vec.hpp"
 
@@ -40,6 +41,23 @@ inline double distance2_to_triangle(Double3 p, Double3 a, Double3 b, Double3 c) 
     if (!(nn > 0)) return std::min({length2(ap), length2(bp), length2(cp)});
     const double h = dot(n, ap);
     return h * h / nn;
+}
+
+/// Where the ray meets the triangle, in lengths of its direction, or infinity (Moeller and Trumbore, Fast,
+/// Minimum Storage Ray/Triangle Intersection, 1997); from either side.
+inline double distance_along(Double3 from, Double3 direction, Double3 a, Double3 b, Double3 c) {
+    constexpr double kMiss = std::numeric_limits<double>::infinity();
+    const Double3 e1 = b - a, e2 = c - a, p = cross(direction, e2);
+    const double det = dot(e1, p);
+    if (det == 0) return kMiss;
+    const Double3 s = from - a;
+    const double u = dot(s, p) / det;
+    if (!(u >= 0 && u <= 1)) return kMiss;
+    const Double3 q = cross(s, e1);
+    const double v = dot(direction, q) / det;
+    if (!(v >= 0 && u + v <= 1)) return kMiss;
+    const double t = dot(e2, q) / det;
+    return t > 0 ? t : kMiss;
 }
 
 }  // namespace vsplit::bake

@@ -260,6 +260,55 @@ TriangleTree::Hit TriangleTree::closest(Double3 point, std::uint32_t guess, doub
     return {best, triangle_at(slot), slot};
 }
 
+TriangleTree::Meeting TriangleTree::first_met(Double3 from, Double3 direction) const {
+    const std::array<double, 3> start{from.x, from.y, from.z},
+        inverse{1 / direction.x, 1 / direction.y, 1 / direction.z};
+    Meeting best;
+    /// Where the ray enters the box; infinity if it does not, or beyond the best.
+    const auto enters = [&](const Node& node) {
+        double first = 0, last = best.distance;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const double a = (double(node.low[k]) - start[k]) * inverse[k],
+                         b = (double(node.high[k]) - start[k]) * inverse[k];
+            // Along a face of the box a and b may be NaN: they then say nothing.
+            first = std::max(first, std::min(a, b) == std::min(a, b) ? std::min(a, b) : first);
+            last = std::min(last, std::max(a, b) == std::max(a, b) ? std::max(a, b) : last);
+        }
+        return first <= last * (1 + 1e-12) ? first : std::numeric_limits<double>::infinity();
+    };
+    struct Entry {
+        std::uint32_t node;
+        double distance;
+    };
+    Entry stack[kStack];
+    int size = 0;
+    if (const double d = enters(nodes_[0]); d < std::numeric_limits<double>::infinity())
+        stack[size++] = {0, d};
+    while (size) {
+        const Entry entry = stack[--size];
+        if (entry.distance > best.distance) continue;
+        const Node& node = nodes_[entry.node];
+        if (node.count) {
+            for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+                const Triangle& t = mesh_.triangles[triangle_at(i)];
+                const double d =
+                    distance_along(from, direction, to_double(mesh_.positions[t[0]]),
+                                   to_double(mesh_.positions[t[1]]), to_double(mesh_.positions[t[2]]));
+                if (d < best.distance || (d == best.distance && d < std::numeric_limits<double>::infinity() &&
+                                          triangle_at(i) < best.triangle))
+                    best = {d, triangle_at(i)};
+            }
+            continue;
+        }
+        Entry near{node.first, enters(nodes_[node.first])};
+        Entry far{node.first + 1, enters(nodes_[node.first + 1])};
+        if (far.distance < near.distance) std::swap(near, far);
+        if (far.distance < std::numeric_limits<double>::infinity()) stack[size++] = far;
+        if (near.distance < std::numeric_limits<double>::infinity()) stack[size++] = near;
+    }
+    return best;
+}
+
 bool TriangleTree::overlapping(Double3 low, Double3 high, std::size_t most,
                                std::vector<std::uint32_t>& out) const {
     std::uint32_t stack[kStack];

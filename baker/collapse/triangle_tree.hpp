@@ -43,6 +43,14 @@ class TriangleTree {
                 double bound2 = std::numeric_limits<double>::infinity(),
                 std::uint32_t most = std::numeric_limits<std::uint32_t>::max()) const;
 
+    struct Meeting {
+        double distance = std::numeric_limits<double>::infinity();  ///< In lengths of the direction.
+        std::uint32_t triangle = 0;
+    };
+    /// The first triangle that a ray meets, from either side; of several at one distance that of the lowest
+    /// number. An infinite distance if it meets none.
+    Meeting first_met(Double3 from, Double3 direction) const;
+
     /// Appends the triangles in the leaves whose boxes meet the box from `low` to `high`; false if they are
     /// more than `most`, and not all are there.
     bool overlapping(Double3 low, Double3 high, std::size_t most, std::vector<std::uint32_t>& out) const;

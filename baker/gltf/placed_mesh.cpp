@@ -198,7 +198,7 @@ Result<Mesh> placed_mesh(const Scene& scene, std::uint64_t max_triangles) {
         ends.push_back(t);
     }
     std::uint64_t triangles = 0, vertices = 0;
-    for (const ScenePlace& place : scene.places) {
+    for (const PlacedPart& place : scene.places) {
         triangles += ends[place.part] - (place.part == 0 ? 0 : ends[place.part - 1]);
         vertices += scene.parts[place.part].end_vertex - scene.parts[place.part].first_vertex;
     }
@@ -217,7 +217,7 @@ Result<Mesh> placed_mesh(const Scene& scene, std::uint64_t max_triangles) {
     }
     Placer placer(coloured ? white : from, mesh);
     const std::vector<std::uint32_t> materials = materials_of(scene);
-    for (const ScenePlace& place : scene.places) {
+    for (const PlacedPart& place : scene.places) {
         const ScenePart& part = scene.parts[place.part];
         const auto base = std::uint32_t(mesh.positions.size());
         const bool mirrored = determinant(place.matrix) < 0;
@@ -239,7 +239,7 @@ Result<Mesh> placed_mesh(const Scene& scene, std::uint64_t max_triangles) {
 
 PoseSets placed_poses(const Scene& scene) {
     PoseSets out;
-    for (const ScenePlace& place : scene.places) {
+    for (const PlacedPart& place : scene.places) {
         const ScenePart& part = scene.parts[place.part];
         const bool posed = !place.poses.empty();
         out.set_of.insert(out.set_of.end(), part.end_vertex - part.first_vertex,

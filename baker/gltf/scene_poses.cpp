@@ -170,7 +170,7 @@ void sample_poses(Document& document, const OrderedJson& root, std::span<const I
         std::size_t part = 0;
         while (part < scene.parts.size() && scene.parts[part].mesh != instance.mesh) ++part;
         if (part == scene.parts.size()) continue;
-        ScenePlace& placed = scene.places[place++];
+        PlacedPart& placed = scene.places[place++];
         const int skin = document.model.nodes[instance.node].skin;
         nodes += document.model.nodes.size() * (count + 1);
         if (skin >= 0) matrices += 2 * document.model.skins[std::size_t(skin)].joints.size() * count;

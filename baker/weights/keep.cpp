@@ -22,14 +22,33 @@ std::tuple<std::uint32_t, std::uint32_t, std::uint32_t> bits(const Float3& p) {
             std::bit_cast<std::uint32_t>(p.z + 0.0f)};
 }
 
-std::vector<std::uint32_t> by_place(std::span<const Float3> positions) {
-    std::vector<std::uint32_t> order(positions.size());
-    std::iota(order.begin(), order.end(), 0u);
-    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-        return std::tuple(bits(positions[a]), a) < std::tuple(bits(positions[b]), b);
-    });
-    return order;
+/// For each vertex the least group of a triangle that has it.
+std::vector<std::uint32_t> groups_of(const Mesh& mesh) {
+    std::vector<std::uint32_t> groups(mesh.positions.size(), 0);
+    if (mesh.groups.empty()) return groups;
+    std::fill(groups.begin(), groups.end(), kNoVertex);
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+        for (const std::uint32_t v : mesh.triangles[t]) groups[v] = std::min(groups[v], mesh.groups[t]);
+    return groups;
 }
+
+/// Vertices of a mesh by group and place.
+struct Places {
+    const Mesh& mesh;
+    std::vector<std::uint32_t> groups = groups_of(mesh), order = sorted();
+
+    auto key(std::uint32_t v) const { return std::tuple(groups[v], bits(mesh.positions[v])); }
+
+  private:
+    std::vector<std::uint32_t> sorted() const {
+        std::vector<std::uint32_t> all(mesh.positions.size());
+        std::iota(all.begin(), all.end(), 0u);
+        std::sort(all.begin(), all.end(), [&](std::uint32_t a, std::uint32_t b) {
+            return std::tuple(key(a), a) < std::tuple(key(b), b);
+        });
+        return all;
+    }
+};
 
 /// The search for one region's weight, the others being as they are.
 struct Search {
@@ -47,11 +66,14 @@ struct Search {
         return count;
     }
 
-    Result<double> share(std::size_t number, double weight, double ratio) {
+    /// `rough`: of the sequence before outliers are put off, which takes a third of the time.
+    Result<double> share(std::size_t number, double weight, double ratio, bool rough = false) {
         marks.regions[number - 1].weight = weight;
         Mesh painted = mesh;
         painted.weights = weights_of(marks, automatic);
-        auto baked = collapse(painted, options, progress);
+        CollapseOptions chosen = options;
+        chosen.put_off_outliers = options.put_off_outliers && !rough;
+        auto baked = collapse(painted, chosen, progress);
         if (!baked) return baked.error();
         ++bakes;
         const ProgressiveMesh& record = baked->mesh;
@@ -63,15 +85,28 @@ struct Search {
     }
 
     Result<KeepResult> run(std::size_t number, const Keep& wish);
+    /// From a weight of 2^start, by steps of at first `step`.
+    Result<KeepResult> run(std::size_t number, const Keep& wish, double start, double step, bool rough);
 };
 
 Result<KeepResult> Search::run(std::size_t number, const Keep& wish) {
+    if (!options.put_off_outliers || options.cost == Cost::kPaper) return run(number, wish, 0, 1, false);
+    // What is put off moves shares a little: the rough weight is nearly that which is sought.
+    auto rough = run(number, wish, 0, 1, true);
+    if (!rough) return rough;
+    auto found = run(number, wish, std::log2(rough->weight), 0.25, false);
+    if (found) found->bakes += rough->bakes;
+    return found;
+}
+
+Result<KeepResult> Search::run(std::size_t number, const Keep& wish, double start, double first_step,
+                               bool rough) {
     const std::size_t before = bakes;
     KeepResult best;
     double best_miss = 2;
     const auto miss = [&](double exponent) -> Result<double> {
         const double weight = std::exp2(exponent);
-        auto kept = share(number, weight, wish.ratio);
+        auto kept = share(number, weight, wish.ratio, rough);
         if (!kept) return kept.error();
         const double off = *kept - wish.share;
         // Of equals the later is nearer to the edge between too little and too much.
@@ -88,12 +123,12 @@ Result<KeepResult> Search::run(std::size_t number, const Keep& wish) {
         best.bakes = bakes - before;
         return best;
     };
-    double low = 0, high = 0;
-    auto at_low = miss(0);
+    double low = start, high = start;
+    auto at_low = miss(start);
     if (!at_low) return at_low.error();
     auto at_high = at_low;
     // Steps that double, until the wish lies between.
-    for (double step = 1; best_miss > enough && (*at_low > 0) == (*at_high > 0); step *= 2) {
+    for (double step = first_step; best_miss > enough && (*at_low > 0) == (*at_high > 0); step *= 2) {
         const bool up = *at_high < 0;
         double& from = up ? low : high;
         double& to = up ? high : low;
@@ -121,16 +156,17 @@ Result<KeepResult> Search::run(std::size_t number, const Keep& wish) {
 
 std::vector<std::uint32_t> record_origins(const Mesh& input, const ProgressiveMesh& record) {
     const Mesh full = cut(record, record.splits.size());
-    const std::vector<std::uint32_t> theirs = by_place(input.positions), ours = by_place(full.positions);
+    const Places theirs{input}, ours{full};
     std::vector<std::uint32_t> origins(full.positions.size(), kNoVertex);
+    const std::vector<std::uint32_t>& there = theirs.order;
     std::size_t i = 0;
-    for (const std::uint32_t v : ours) {
-        const auto place = bits(full.positions[v]);
-        while (i < theirs.size() && bits(input.positions[theirs[i]]) < place) ++i;
-        if (i == theirs.size() || bits(input.positions[theirs[i]]) != place) continue;
-        origins[v] = theirs[i];
+    for (const std::uint32_t v : ours.order) {
+        const auto place = ours.key(v);
+        while (i < there.size() && theirs.key(there[i]) < place) ++i;
+        if (i == there.size() || theirs.key(there[i]) != place) continue;
+        origins[v] = there[i];
         // The last one at a place serves all that are left there.
-        if (i + 1 < theirs.size() && bits(input.positions[theirs[i + 1]]) == place) ++i;
+        if (i + 1 < there.size() && theirs.key(there[i + 1]) == place) ++i;
     }
     return origins;
 }

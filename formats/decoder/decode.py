@@ -104,6 +104,11 @@ def log2(x):
     return 256 * top + LOG_FRACTIONS[(x >> (top - 10) if top >= 10 else x << (10 - top)) & 1023]
 
 
+def log2_linear(x):
+    top = x.bit_length() - 1
+    return 256 * top + ((x << 8 >> top) & 255)
+
+
 ROOTS = [1076653033, 1079572136, 1085434106, 1097253708, 1121280436, 1170923762, 1276901417, 1518500250]
 
 
@@ -116,6 +121,12 @@ def _power(i):
 
 
 POWERS = [_power(i) for i in range(256)]
+
+
+def share(below):
+    i = min(below >> 7, 511)
+    octaves = (i + 31) // 32
+    return min(2 * POWERS[8 * (32 * octaves - i)] >> octaves, 65535)
 
 
 def half_octave(x):
@@ -245,6 +256,7 @@ class Residual:
     def __init__(self, scales, kinds):
         self.scales, self.kinds = scales, kinds
         self.second = [[Bit() for _ in range(4)] for _ in range(64)]
+        self.sign = [Bit() for _ in range(64)]
         self.digits = []
         for scale in range(scales):
             weight = [0] * 64
@@ -261,7 +273,7 @@ class Residual:
                     model.nodes[node] = Bit(min(max(one, 64), 65472), 4)
                 self.digits.append(model)
 
-    def decode(self, coder, scale, kind):
+    def decode(self, coder, scale, kind, side=None):
         scale = min(scale, self.scales - 1)
         count = self.digits[scale * self.kinds + kind].decode(coder)
         if count == 0:
@@ -272,9 +284,14 @@ class Residual:
             read = 2 * read + coder.bit(second[0])
         if count > 2:
             read = 2 * read + coder.bit(second[read - 1])
-        if count > 3:
-            read = read << (count - 3) | coder.raw(count - 3)
-        return -read if coder.raw(1) else read
+        rest = max(count - 3, 0)
+        if side is None:
+            raw = coder.raw(rest + 1)
+        else:
+            raw = coder.raw(rest) << 1
+            raw |= coder.bit(self.sign[side])
+        read = read << rest | raw >> 1
+        return -read if raw & 1 else read
 
 
 # ---- Header, details, table
@@ -301,12 +318,16 @@ class File:
             if xxh64(part) != checksum:
                 raise Bad('a checksum of the front')
         self.draco, self.extras = base[:draco_bytes], base[draco_bytes:]
-        flat = struct.unpack_from('<126b', details, 0)
-        self.place_weights = [[[flat[((k * 7 + r) * 2 + row) * 3:][:3] for row in range(2)] for r in range(7)]
-                              for k in range(3)]
+        self.place_weights, at = [], 1
+        for k in range(3):
+            flat = [-32, 24, 24] * 14 if k == 2 else [40, 0, 32] * 14
+            if details[0] >> k & 1:
+                flat = struct.unpack_from('<42b', details, at)
+                at += 42
+            self.place_weights.append([[flat[(r * 2 + row) * 3:][:3] for row in range(2)] for r in range(7)])
         self.attributes = []
-        at = 128
-        for _ in range(struct.unpack_from('<H', details, 126)[0]):
+        at += 2
+        for _ in range(struct.unpack_from('<H', details, at - 2)[0]):
             semantic, components, coding, bits = struct.unpack_from('<4B', details, at)
             at += 4
             grid = []
@@ -439,13 +460,13 @@ class Cuts:
         self.lengths = [[[1] * 17 for _ in range(17)] for _ in range(3)]
         self.both, self.last = [Bit() for _ in range(8)], Bit()
 
-    def decode(self, coder, live, star):
+    def decode(self, coder, live, star, born_from):
         n, ring, closed = star.size, star.ring, star.closed
         count = len(ring)
         spoke = [[live.at[v][a] - live.at[star.centre][a] for a in range(3)] for v in ring]
         square = [sum(x * x for x in s) + 1 for s in spoke]
-        length_log = [log2(s) for s in square]
-        mean = log2(sum(square)) - log2(count)
+        length_log = [log2_linear(s) for s in square]
+        mean = log2_linear(sum(square)) - log2_linear(count)
         edge, chord = [], []
         for i, v in enumerate(ring):
             valence = min(max(len(live.star[v]), 2), 9) - 2
@@ -454,48 +475,57 @@ class Cuts:
                 chord.append(9)
             else:
                 across = sum((a - b) ** 2 for a, b in zip(spoke[(i + 1) % count], spoke[i - 1])) + 1
-                chord.append(ratio_class(log2(across) - length_log[i] - 256))
+                chord.append(ratio_class(log2_linear(across) - length_log[i] - 256))
 
         first_wing = last_wing = True
         if not closed and not coder.bit(self.both[min(n, 7)]):
             last_wing = bool(coder.bit(self.last))
             first_wing = not last_wing
         family = 0 if closed else 1 if first_wing and last_wing else 2
-        child = lambda i: 9 * self.edge[edge[i % count]].child + 4 * self.chord[chord[i % count]].child
-        wing = lambda i: 9 * self.edge[edge[i % count]].wing + 4 * self.chord[chord[i % count]].wing
+        wing = [9 * self.edge[e].wing + 4 * self.chord[c].wing for e, c in zip(edge, chord)]
+        child = [9 * self.edge[e].child + 4 * self.chord[c].child for e, c in zip(edge, chord)]
+        is_wing = [share(max(wing) - w) for w in wing]
+        is_child = [share(max(child) - c) for c in child]
         lengths = self.lengths[family][min(n, 16)]
         scaled = lambda length: length if n <= 16 else length * 16 // n
-        runs, scores = [], []
-        for length in range(0 if family == 2 else 1, n if closed else n + 1):
+        shortest, longest = 0 if family == 2 else 1, n - 1 if closed else n
+        score = {length: 16 * log2(lengths[scaled(length)]) + (length - shortest) * max(child)
+                 for length in range(shortest, longest + 1)}
+        shift = 0 if n <= 8 else 2 if n <= 16 else 4
+        runs, weights = [], []
+        for length in range(shortest, longest + 1):
             if family == 2:
-                begins = [count - 1 - length if first_wing else 0]
+                begins = [n - length if first_wing else 0]
             else:
                 begins = range(n if closed else n + 1 - length)
             for begin in begins:
                 end = begin + length
-                score = 16 * log2(lengths[scaled(length)])
-                score += (wing(begin) if first_wing else 0) + (wing(end) if last_wing else 0)
-                score += sum(child(i) for i in range(begin + 1 if first_wing else begin, end if last_wing else end + 1))
+                if any(max(ring[i % count], ring[(i + 1) % count]) >= born_from for i in range(begin, end)):
+                    continue
+                if family == 2:
+                    weight, last = 65535, begin if first_wing else end
+                    inner = range(n, begin, -1) if first_wing else range(end)
+                else:
+                    weight, last, inner = is_wing[begin], end % count, range(begin + 1, end)
+                for i in inner:
+                    weight = weight * is_child[i % count] >> 16
+                weight = (weight * is_wing[last] >> 16) * share(max(score.values()) - score[length]) >> 16
                 runs.append((begin, length))
-                scores.append(score)
-        weights = []
-        for score in scores:
-            below = min((max(scores) - score) >> 7, 384)
-            octaves = (below + 31) // 32
-            weights.append(max(1, POWERS[8 * (32 * octaves - below)] >> (3 + octaves)))
+                weights.append((weight >> shift) + 1)
+        if not runs:
+            raise Bad('a run has no place in its fan')
         begin, length = runs[coder.pick(weights)]
 
+        roles = [0] * count
+        for i in range(begin, begin + length + 1):
+            roles[i % count] = 2
+        if first_wing:
+            roles[begin] = 1
+        if last_wing:
+            roles[(begin + length) % count] = 1
         for i in range(count):
-            after = i - begin if i >= begin else i + n - begin
-            role = 2 if 0 < after < length else 0
-            if after == 0:
-                role = 1 if first_wing else 2
-            if after == length and (closed or i >= begin):
-                role = 1 if last_wing else 2
-            if not closed and i < begin:
-                role = 0
-            self.edge[edge[i]].saw(role)
-            self.chord[chord[i]].saw(role)
+            self.edge[edge[i]].saw(roles[i])
+            self.chord[chord[i]].saw(roles[i])
         lengths[scaled(length)] += 4
         if lengths[scaled(length)] > 4000:
             lengths[:] = [c >> 1 | 1 for c in lengths]
@@ -524,8 +554,8 @@ def rough_shift(scale, bent):
 class Places:
     def __init__(self, weights):
         self.weights = weights
-        self.first = [Residual(56, 3) for _ in range(3)]
-        self.second = [Residual(56, 3) for _ in range(3)]
+        self.first = [Residual(56, 6) for _ in range(3)]
+        self.second = [Residual(56, 6) for _ in range(3)]
         self.third = [Residual(56, 4) for _ in range(3)]
         self.free = Residual(1, 1)
 
@@ -563,13 +593,15 @@ class Places:
         excess = max(0, largest.bit_length() - 24)
         normal = [n >> excess for n in normal]
         spread = [(sum(abs(16 * o[a] - along[a]) for o in corners) // 4 * (65536 // count)) >> 16 for a in range(3)]
-        roughness = 0
+        roughness, rise, sinks = 0, 0, 0
         if normal[c] != 0:
             middle = [mean16(sum(o[a] for o in corners), count) for a in range(3)]
             height = lambda d: sum((d[a] - middle[a]) * normal[a] for a in range(3))
             total = sum(abs(height([16 * x for x in o])) >> 4 for o in corners)
             mean = (total >> 8) * (65536 // count) >> 8
             predicted = abs(height(across)) >> 4
+            rise = half_octave(4 * predicted) - half_octave(abs(normal[c]))
+            sinks = int((height(across) < 0) != (normal[c] < 0))
             roughness = min(4 * (mean + predicted // 2) // abs(normal[c]), 1 << 26)
 
         a, b = 1 if c == 0 else 0, 1 if c == 2 else 2
@@ -580,18 +612,30 @@ class Places:
         bent = 0 if flatness + 6 < mean_scale else 1 if flatness + 2 < mean_scale else 2
         at_a, at_b = (within(origin[x] + ((along[x] + 8) >> 4)) for x in (a, b))
         shift_a, shift_b = (rough_shift(x, bent) if rough else 0 for x in (scale_a, scale_b))
-        step_a = self.first[kind].decode(coder, scale_a - 2 * shift_a, bent)
+        regular = 3 * (ring_class == 3)
+        step_a = self.first[kind].decode(coder, scale_a - 2 * shift_a, bent + regular)
         out[a] = within(at_a + (step_a << shift_a))
+        sum_a, sum_b = sum(o[a] for o in corners), sum(o[b] for o in corners)
+        squares = count * sum(o[a] * o[a] for o in corners) - sum_a * sum_a
+        products = count * sum(o[a] * o[b] for o in corners) - sum_a * sum_b
+        lean = 0
+        if squares > 0:
+            excess = max(0, squares.bit_length() - 50)
+            squares, products = squares >> excess, products >> excess
+            products = min(max(products, -4 * squares), 4 * squares)
+            lean = 768 * abs(products) // squares * (-1 if products < 0 else 1)
+        at_b = within(at_b + ((lean * (out[a] - at_a) + 512) >> 10))
         missed_a = departure(step_a, scale_a - 2 * shift_a)
-        step_b = self.second[kind].decode(coder, scale_b - 2 * shift_b, missed_a)
+        step_b = self.second[kind].decode(coder, scale_b - 2 * shift_b, missed_a + regular)
         out[b] = within(at_b + (step_b << shift_b))
         missed = max(missed_a, departure(step_b, scale_b - 2 * shift_b))
+        leans = 2 * min(max(rise - mean_scale + 11, 0), 11) + sinks
         slide = 0
         if normal[c] != 0:
-            side = sum((16 * (out[x] - origin[x]) - across[x]) * normal[x] for x in (a, b))
-            slide = quotient(side, normal[c]) if normal[c] > 0 else quotient(-side, -normal[c])
+            along_plane = sum((16 * (out[x] - origin[x]) - across[x]) * normal[x] for x in (a, b))
+            slide = quotient(along_plane, normal[c]) if normal[c] > 0 else quotient(-along_plane, -normal[c])
         at_c = within(origin[c] + ((across[c] - slide + 8) >> 4))
-        out[c] = within(at_c + self.third[kind].decode(coder, flatness, missed))
+        out[c] = within(at_c + self.third[kind].decode(coder, flatness, missed, leans))
         return out
 
     def decode_free(self, coder, near):
@@ -647,10 +691,13 @@ class Decoder:
         self.marked_left = self.unmarked_left = 0
         self.error_bits, self.split_size = 0x7F7FFFFF, 0
         self.mark = [Bit() for _ in range(8 * 18 * 10)]
+        self.batch_mark = [Bit() for _ in range(10 * 7 * 3 * 10)]
+        self.kind, self.kinds, self.older = 0, Symbol(2), 0
         self.marked, self.unmarked, self.error, self.gap = Number(), Number(), Number(), Number()
 
         bits = lambda n: [Bit() for _ in range(n)]
-        self.one_birth, self.regular, self.place_moves, self.same_move, self.same_place = (bits(2) for _ in range(5))
+        self.plain, self.one_birth, self.regular, self.place_moves, self.same_move, self.same_place = (
+            bits(2) for _ in range(6))
         self.rough = bits(2)
         self.implied, self.group_stays, self.in_mask, self.moved, self.twin_moved = \
             Bit(), Bit(), Bit(), bits(3), bits(2)
@@ -695,10 +742,14 @@ class Decoder:
         coder = Coder(data)
         while len(self.splits) < splits_end:
             if self.marked_left == 0 and self.unmarked_left == 0:
+                self.kind = self.kinds.decode(coder)
+                if self.kind == 3:
+                    raise Bad('a sweep is of no known kind')
                 self.marked_left, self.unmarked_left = self.marked.decode(coder), self.unmarked.decode(coder)
                 self.error_bits -= self.error.decode(coder)
                 alive = len(self.live.at)
                 self.sweep += 1
+                self.older = alive
                 self.cursor, self.round, self.asked = 0, 0, set(range(alive))
                 self.sparse = self.marked_left * 64 < alive
             primary = NONE
@@ -715,6 +766,19 @@ class Decoder:
         if self.sparse:
             self.cursor = (self.cursor + self.gap.decode(coder)) % alive
             return self.cursor
+        if self.kind:
+            while self.cursor < self.older:
+                v, star = self.cursor, self.live.star[self.cursor]
+                locked = sum(self.is_locked(c // 3) for c in star)
+                if self.kind == 2 or locked < len(star):
+                    size, bumpy = self.bumpy(v)
+                    acted = min(self.sweep - self.live.acted[v], 2)
+                    valence = min(max(len(star), 3), 12) - 3
+                    if coder.bit(self.batch_mark[((valence * 7 + min(locked, 6)) * 3 + acted) * 10 + bumpy]):
+                        self.split_size += (size - self.split_size) >> 5
+                        return v
+                self.cursor += 1
+            raise Bad('a sweep marks fewer vertices than it announces')
         while True:
             ahead = [v for v in self.asked if v >= self.cursor]
             if not ahead:
@@ -722,14 +786,20 @@ class Decoder:
                 ahead = self.asked
             v = self.cursor = min(ahead)
             self.asked.remove(v)
-            size = log2(1 + sum(b * b for b in self.live.bump(v)))
+            size, bumpy = self.bumpy(v)
             valence = min(max(len(self.live.star[v]), 3), 10) - 3
             touched, acted = min(self.sweep - self.live.touched[v], 2), min(self.sweep - self.live.acted[v], 2)
             age = (touched * 3 + acted) * 2 + (self.round > 0)
-            bumpy = min(max((size - self.split_size + 1536) >> 8, 0), 9)
             if coder.bit(self.mark[(valence * 18 + age) * 10 + bumpy]):
                 self.split_size += (size - self.split_size) >> 5
                 return v
+
+    def bumpy(self, v):
+        size = log2(1 + sum(b * b for b in self.live.bump(v)))
+        return size, min(max((size - self.split_size + 1536) >> 8, 0), 9)
+
+    def is_locked(self, triangle):
+        return self.kind > 0 and max(self.live.triangles[triangle]) >= self.older
 
     def decode_finer(self, coder):
         return [n.decode(coder) for n in self.finer_numbers] if self.file.lossless else [0, 0, 0]
@@ -746,20 +816,28 @@ class Decoder:
 
     def decode_split(self, coder, primary):
         live, marked = self.live, primary != NONE
+        if marked:
+            star = Star(live, primary)
+            if star.fan and coder.bit(self.plain[star.closed]):
+                return self.decode_plain(coder, primary, star)
         count = 1 if coder.bit(self.one_birth[marked]) else self.births.decode(coder)
         births, taken, moves, implied = [], [], [], []     # births: parent, place, finer, values; moves: the same
         for index in range(count):
             parent = self.decode_parent(coder, primary, index, births)
             run, child_ring, parent_ring = None, [], []
             if parent != NONE:
+                if self.kind and parent >= self.older:
+                    raise Bad('a batch splits a vertex that it bore')
                 child = len(live.at) + index
                 star = Star(live, parent)
                 if star.fan and coder.bit(self.regular[star.closed]):
-                    run = self.cuts.decode(coder, live, star)
+                    run = self.cuts.decode(coder, live, star, self.older if self.kind else NONE)
                     child_ring, parent_ring = self.take_run(star, run, child, taken, implied)
                 else:
                     mine = [c for c in star.corners
                             if (coder.raw(1) if star.size > 64 else coder.bit(self.in_mask))]
+                    if any(self.is_locked(c // 3) for c in mine):
+                        raise Bad('a batch changes a triangle twice')
                     taken.append((child, mine))
             moving = False
             if parent != NONE and all(b[0] != parent for b in births):
@@ -805,6 +883,21 @@ class Decoder:
             if self.group_bits:
                 groups.append(self.decode_group(coder, self.last_group))
         self.make_split(births, taken, moves, triangles, groups)
+
+    def decode_plain(self, coder, parent, star):
+        taken, moves, implied = [], [], []
+        run = self.cuts.decode(coder, self.live, star, self.older if self.kind else NONE)
+        child_ring, parent_ring = self.take_run(star, run, len(self.live.at), taken, implied)
+        moving = coder.bit(self.moved[0])
+        rough = moving and not self.file.lossless and coder.bit(self.rough[0])
+        place = self.places.decode(coder, self.live, 1 if moving else 0, parent, child_ring, not (run[2] and run[3]), rough)
+        finer = self.decode_finer(coder)
+        self.last_place = place
+        values = self.decode_values(coder, *self.predict_values(parent, child_ring, []))
+        if moving:
+            self.decode_move(coder, parent, (parent_ring, not star.closed, place), moves)
+        groups = [self.decode_group(coder, group) for _, group in implied] if self.group_bits else []
+        self.make_split([(parent, place, finer, values)], taken, moves, [t for t, _ in implied], groups)
 
     def decode_parent(self, coder, primary, index, births):
         if index == 0 and primary != NONE:

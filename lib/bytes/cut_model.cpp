@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "cut_model.hpp"
 
+#include "lanes.hpp"
+
 namespace vsplit {
 namespace {
 
@@ -11,67 +13,154 @@ std::uint32_t ratio_class(std::int32_t log) {
     return static_cast<std::uint32_t>(std::clamp(c, 0, 8));
 }
 
-}  // namespace
-
-void CutModel::Role::saw(unsigned role) {
-    if ((count[role] = static_cast<std::uint16_t>(count[role] + 4)) > kMostSeen)
-        for (auto& c : count) c = static_cast<std::uint16_t>((c >> 1) | 1);
-    wing = log2_count(count[1]) - log2_count(count[0]);
-    child = log2_count(count[2]) - log2_count(count[0]);
+std::uint16_t share(std::int32_t below) {
+    return kLikelihoods[static_cast<std::size_t>(std::min(below >> 7, 511))];
 }
 
-CutModel::CutModel() = default;
+std::uint16_t product(std::uint32_t a, std::uint32_t b) {
+    return static_cast<std::uint16_t>((a * b) >> 16);
+}
+
+}  // namespace
 
 void CutModel::classify(const LiveStars& mesh, const Star& star) {
     const std::uint32_t count = star.ring_size();
     const Lattice3 centre = mesh.vertices[star.centre].at;
-    std::array<std::array<std::int64_t, 3>, Star::kLargestFan + 1> spoke;
-    std::array<std::int32_t, Star::kLargestFan + 1> length;  // log2 of the squares, in 1/256
-    std::uint64_t sum = 0;
+    // Whole numbers below 2^53 in doubles: all of this is exact, and log2_linear() is their topmost bits.
+    constexpr std::size_t kMost = Star::kLargestFan + 4;
+    std::array<double, kMost> x, y, z, squared, chord;  // the first two from the one before the first on
+    std::array<std::int32_t, kMost> valence, length, across;
+    double sum = 0;
     for (std::uint32_t i = 0; i < count; ++i) {
-        const Lattice3& at = mesh.vertices[star.ring[i]].at;
-        std::uint64_t square = 1;
-        for (std::size_t k = 0; k < 3; ++k) {
-            spoke[i][k] = std::int64_t{at[k]} - centre[k];
-            square += static_cast<std::uint64_t>(spoke[i][k] * spoke[i][k]);
-        }
-        sum += square;
-        length[i] = log2_fixed(square);
+        const LiveVertex& v = mesh.vertices[star.ring[i]];
+        x[i + 1] = v.at[0] - centre[0];
+        y[i + 1] = v.at[1] - centre[1];
+        z[i + 1] = v.at[2] - centre[2];
+        valence[i] = static_cast<std::int32_t>(9 * (std::clamp<std::uint32_t>(v.star, 2, 9) - 2));
     }
-    const std::int32_t mean = log2_fixed(sum) - log2_fixed(count);
+    for (auto* axis : {&x, &y, &z}) (*axis)[0] = (*axis)[count], (*axis)[count + 1] = (*axis)[1];
     for (std::uint32_t i = 0; i < count; ++i) {
-        const std::uint32_t valence = std::clamp<std::uint32_t>(mesh.vertices[star.ring[i]].star, 2, 9) - 2;
-        const std::int32_t log = length[i];
-        edge_kind_[i] = static_cast<std::uint8_t>(9 * valence + ratio_class(log - mean));
-        if (!star.closed && (i == 0 || i + 1 == count)) {
-            chord_kind_[i] = 9;
-        } else {
-            const auto &before = spoke[i == 0 ? count - 1 : i - 1],
-                       &after = spoke[i + 1 == count ? 0 : i + 1];
-            std::uint64_t chord = 1;
-            for (std::size_t k = 0; k < 3; ++k)
-                chord += static_cast<std::uint64_t>((after[k] - before[k]) * (after[k] - before[k]));
-            chord_kind_[i] = static_cast<std::uint8_t>(ratio_class(log2_fixed(chord) - log - 256));
-        }
+        squared[i] = 1 + x[i + 1] * x[i + 1] + y[i + 1] * y[i + 1] + z[i + 1] * z[i + 1];
+        const double dx = x[i + 2] - x[i], dy = y[i + 2] - y[i], dz = z[i + 2] - z[i];
+        chord[i] = 1 + dx * dx + dy * dy + dz * dz;
     }
+    for (std::uint32_t i = 0; i < count; ++i) {
+        sum += squared[i];
+        length[i] = log2_linear(squared[i]);
+        across[i] = log2_linear(chord[i]);
+    }
+    const std::int32_t mean = log2_linear(sum) - log2_linear(std::uint64_t{count});
+    for (std::uint32_t i = 0; i < count; ++i) {
+        edge_kind_[i] = static_cast<std::uint8_t>(valence[i] + ratio_class(length[i] - mean));
+        chord_kind_[i] = static_cast<std::uint8_t>(ratio_class(across[i] - length[i] - 256));
+    }
+    if (!star.closed) chord_kind_[0] = chord_kind_[count - 1] = 9;
+}
+
+template <std::uint32_t kBlocks>
+std::uint32_t CutModel::weigh_rows(std::uint32_t begins, std::uint32_t longest, int shift) {
+    // Each lane is a begin; the run grows by a sector from row to row.
+    std::array<Lanes, kBlocks> run, may;
+    std::array<std::uint16_t, 8 * kBlocks> first{};
+    for (std::uint32_t i = 0; i < begins; ++i) first[i] = open_[i];
+    for (std::uint32_t j = 0; j < kBlocks; ++j) {
+        run[j] = Lanes::load(wing_.data() + 8 * j);
+        may[j] = Lanes::load(first.data() + 8 * j);
+    }
+    const Lanes one = Lanes::of(1);
+    std::uint32_t total = 0;
+    for (std::uint32_t l = 1; l <= longest; ++l) {
+        const Lanes likely = Lanes::of(length_[l]);
+        std::uint32_t sum = 0;
+        for (std::uint32_t j = 0; j < kBlocks; ++j) {
+            const std::uint32_t at = 8 * j + l;
+            const Lanes weight = run[j] * Lanes::load(wing_.data() + at) * likely;
+            const Lanes out = ((weight >> shift) + one) & may[j];
+            out.store(weights_[l].data() + 8 * j);
+            sum += out.sum();
+            run[j] = run[j] * Lanes::load(child_.data() + at);
+            may[j] = may[j] & Lanes::load(open_.data() + at);
+        }
+        total += sums_[l] = sum;
+    }
+    return total;
+}
+
+std::uint32_t CutModel::weigh(const Star& star, const Cut& wings, std::size_t family, std::uint32_t locked) {
+    const std::uint32_t n = star.size, ring = star.ring_size();
+    std::array<std::int32_t, Star::kLargestFan + 1> wing, child;
+    std::int32_t most_wing = INT32_MIN, most_child = INT32_MIN;
+    for (std::uint32_t i = 0; i < ring; ++i) {
+        const Role &edge = by_edge_[edge_kind_[i]], &chord = by_chord_[chord_kind_[i]];
+        wing[i] = edge.wing + chord.wing;
+        child[i] = edge.child + chord.child;
+        most_wing = std::max(most_wing, wing[i]);
+        most_child = std::max(most_child, child[i]);
+    }
+    const std::uint32_t round = star.closed ? n : 0;  // an open fan's copies are behind all lanes that count
+    for (std::uint32_t i = 0; i < ring; ++i) {
+        wing_[i] = wing_[i + round] = share(most_wing - wing[i]);
+        child_[i] = child_[i + round] = share(most_child - child[i]);
+    }
+    // All lengths against the likeliest, the likeliest inner vertices assumed.
+    const std::uint32_t shortest = family == 2 ? 0 : 1, longest = star.closed ? n - 1 : n;
+    const auto& logs = lengths_[family].log[std::min<std::size_t>(n, kLongest)];
+    std::array<std::int32_t, Star::kLargestFan + 1> length;
+    std::int32_t most = INT32_MIN, inner = 0;
+    for (std::uint32_t l = shortest; l <= longest; ++l, inner += most_child) {
+        length[l] = logs[n <= kLongest ? l : std::size_t{l} * kLongest / n] + inner;
+        most = std::max(most, length[l]);
+    }
+    for (std::uint32_t l = shortest; l <= longest; ++l) length_[l] = share(most - length[l]);
+
+    for (std::uint32_t i = 0; i < n; ++i) {
+        const bool may = star.ring[i] < locked && star.ring_at(i + 1) < locked;
+        open_[i] = open_[i + round] = may ? 0xFFFF : 0;
+    }
+    if (!star.closed) std::fill(open_.begin() + n, open_.end(), std::uint16_t{0});
+
+    const int shift = n <= 8 ? 0 : n <= 16 ? 2 : 4;
+    if (family == 2) {
+        std::uint32_t total = 0;
+        std::uint16_t run = 65535, may = 0xFFFF;
+        for (std::uint32_t l = 0; l <= longest; ++l) {
+            const std::uint32_t end = wings.last_wing ? l : n - l;  // of the wing
+            const std::uint16_t weight = product(product(run, wing_[end]), length_[l]);
+            weights_[l][0] = static_cast<std::uint16_t>(((weight >> shift) + 1) & may);
+            total += sums_[l] = weights_[l][0];
+            run = product(run, child_[end]);
+            if (l < n) may &= open_[wings.last_wing ? l : n - 1 - l];
+        }
+        return total;
+    }
+    return n <= 8    ? weigh_rows<1>(n, longest, shift)
+           : n <= 16 ? weigh_rows<2>(n, longest, shift)
+                     : weigh_rows<4>(n, longest, shift);
 }
 
 void CutModel::learn(const Star& star, const Cut& cut) {
     const std::uint32_t n = star.size, count = star.ring_size();
+    std::array<std::uint8_t, Star::kLargestFan + 1> role{};
+    const auto wrapped = [&](std::uint32_t i) { return star.closed && i >= n ? i - n : i; };
+    for (std::uint32_t i = cut.begin; i <= cut.begin + cut.length; ++i) role[wrapped(i)] = 2;
+    if (cut.first_wing) role[cut.begin] = 1;
+    if (cut.last_wing) role[wrapped(cut.begin + cut.length)] = 1;
     for (std::uint32_t i = 0; i < count; ++i) {
-        const std::uint32_t after = i >= cut.begin ? i - cut.begin : i + n - cut.begin;
-        unsigned role = after > 0 && after < cut.length ? 2 : 0;
-        if (after == 0) role = cut.first_wing ? 1 : 2;
-        if (after == cut.length && (star.closed || i >= cut.begin)) role = cut.last_wing ? 1 : 2;
-        if (!star.closed && i < cut.begin) role = 0;
-        by_edge_[edge_kind_[i]].saw(role);
-        by_chord_[chord_kind_[i]].saw(role);
+        by_edge_[edge_kind_[i]].saw(role[i], kWeighEdge);
+        by_chord_[chord_kind_[i]].saw(role[i], kWeighChord);
     }
     const std::size_t family = star.closed ? 0 : cut.first_wing && cut.last_wing ? 1 : 2;
-    auto& row = lengths_[family].count[std::min<std::size_t>(n, kLongest)];
-    auto& length = row[n <= kLongest ? cut.length : std::size_t{cut.length} * kLongest / n];
-    if ((length = static_cast<std::uint16_t>(length + 4)) > 4000)
-        for (auto& c : row) c = static_cast<std::uint16_t>((c >> 1) | 1);
+    const std::size_t most = std::min<std::size_t>(n, kLongest),
+                      at = n <= kLongest ? cut.length : std::size_t{cut.length} * kLongest / n;
+    auto& row = lengths_[family].count[most];
+    auto& logs = lengths_[family].log[most];
+    if ((row[at] = static_cast<std::uint16_t>(row[at] + 4)) > 4000) {
+        for (std::size_t i = 0; i < row.size(); ++i) {
+            row[i] = static_cast<std::uint16_t>((row[i] >> 1) | 1);
+            logs[i] = kWeighLength * log2_count(row[i]);
+        }
+    }
+    logs[at] = kWeighLength * log2_count(row[at]);
 }
 
 }  // namespace vsplit

@@ -11,7 +11,13 @@ namespace vsplit {
 
 std::vector<std::byte> encode_details(const Details& details) {
     ByteWriter out;
-    out.put(details.weights);
+    const PlaceWeights defaults = default_place_weights();
+    std::uint8_t kinds = 0;
+    for (std::size_t kind = 0; kind < kPlaceKinds; ++kind)
+        if (details.weights[kind] != defaults[kind]) kinds = static_cast<std::uint8_t>(kinds | 1u << kind);
+    out.put(kinds);
+    for (std::size_t kind = 0; kind < kPlaceKinds; ++kind)
+        if (kinds >> kind & 1) out.put(details.weights[kind]);
     out.put(static_cast<std::uint16_t>(details.rules.size()));
     for (const ValueRule& rule : details.rules) {
         out.put(static_cast<std::uint8_t>(rule.semantic));
@@ -40,8 +46,20 @@ std::optional<Details> decode_details(std::span<const std::byte> bytes, const ch
         at += sizeof(T);
     };
     std::uint16_t count = 0;
-    if (!has(sizeof(PlaceWeights) + 2)) return std::nullopt;
-    take(details.weights);
+    std::uint8_t kinds = 0;
+    if (!has(1)) return std::nullopt;
+    take(kinds);
+    if (kinds >> kPlaceKinds) {
+        fault = "the details have weights of an unknown kind";
+        return std::nullopt;
+    }
+    details.weights = default_place_weights();
+    for (std::size_t kind = 0; kind < kPlaceKinds; ++kind) {
+        if (!(kinds >> kind & 1)) continue;
+        if (!has(sizeof(details.weights[kind]))) return std::nullopt;
+        take(details.weights[kind]);
+    }
+    if (!has(2)) return std::nullopt;
     take(count);
     for (std::uint32_t i = 0; i < count; ++i) {
         ValueRule rule;

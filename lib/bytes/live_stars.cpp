@@ -164,16 +164,15 @@ void LiveStars::order(std::uint32_t vertex) {
         for (std::uint32_t j = 0; j < i; ++j)
             if (row[i].vertex == row[j].vertex) return;
     }
-    store_fan(vertex, row.data(), closed ? n : n + 1, closed);
+    std::copy_n(row.data(), closed ? n : n + 1, make_room(vertex, n + 1));
+    set_fan(v, n, closed);
 }
 
-void LiveStars::store_fan(std::uint32_t vertex, const Slot* slots, std::uint32_t count, bool closed) {
-    LiveVertex& v = vertices[vertex];
-    std::copy_n(slots, count, make_room(vertex, count));
-    v.star = closed ? count : count - 1;
-    v.shape = v.star > Star::kLargestFan ? LiveVertex::Shape::kOther
-              : closed                   ? LiveVertex::Shape::kClosed
-                                         : LiveVertex::Shape::kOpen;
+void LiveStars::set_fan(LiveVertex& vertex, std::uint32_t triangles, bool closed) {
+    vertex.star = triangles;
+    vertex.shape = triangles > Star::kLargestFan ? LiveVertex::Shape::kOther
+                   : closed                      ? LiveVertex::Shape::kClosed
+                                                 : LiveVertex::Shape::kOpen;
 }
 
 void LiveStars::replace(std::uint32_t vertex, std::uint32_t parent, std::uint32_t child) {
@@ -221,76 +220,83 @@ void LiveStars::split(const Star& star, const Cut& cut, const Lattice3& parent_a
     if (cut.first_wing) triangles.push_back({child, p, first_at});
     std::uint32_t* const corners = triangles.data()->data();
 
-    // The rows around both.
-    std::array<Slot, Star::kLargestFan + 3> row;
-    std::uint32_t count = 0;
+    // The child's row, and what the run adds to the sums around it.
     const bool closed = cut.first_wing && cut.last_wing;
-    if (cut.first_wing && !closed) row[count++] = {p, first_corner};
+    std::array<std::uint32_t, 3> run{};
+    const auto add = [](std::array<std::uint32_t, 3>& sum, const Lattice3& at) {
+        for (std::size_t k = 0; k < 3; ++k) sum[k] += static_cast<std::uint32_t>(at[k]);
+    };
+    Slot* to = make_room(child, length + 2);
+    if (cut.first_wing && !closed) *to++ = {p, first_corner};
     for (std::uint32_t i = begin; i < end; ++i) {
         const std::uint32_t k = wrapped(i);
         corners[star.corner[k]] = child;
-        row[count++] = {star.ring[k], star.corner[k]};
+        *to++ = {star.ring[k], star.corner[k]};
+        add(run, vertices[star.ring[k]].at);
+        add(run, vertices[star.ring[wrapped(i + 1)]].at);
     }
-    row[count++] = {last_at, cut.last_wing ? last_corner : kNoVertex};
-    if (cut.last_wing) row[count++] = {p, cut.first_wing ? first_corner : kNoVertex};
-    store_fan(child, row.data(), count, closed);
-    const auto sum_around = [&](std::uint32_t vertex, bool is_closed) {
-        std::array<std::uint32_t, 3> sum{};
-        for (std::uint32_t i = 0; i < count; ++i) {
-            const Lattice3& at = vertices[row[i].vertex].at;
-            const std::uint32_t times = !is_closed && (i == 0 || i + 1 == count) ? 1 : 2;
-            for (std::size_t k = 0; k < 3; ++k) sum[k] += times * static_cast<std::uint32_t>(at[k]);
-        }
-        vertices[vertex].ring = sum;
-    };
-    sum_around(child, closed);
-    count = 0;
+    *to++ = {last_at, cut.last_wing ? last_corner : kNoVertex};
+    if (cut.last_wing) *to++ = {p, cut.first_wing ? first_corner : kNoVertex};
+    LiveVertex& born = vertices[child];
+    set_fan(born, length + std::uint32_t{cut.first_wing} + std::uint32_t{cut.last_wing}, closed);
+    born.ring = run;
+
+    // The parent's.
+    const std::uint32_t kept = n - length + std::uint32_t{cut.first_wing} + std::uint32_t{cut.last_wing};
+    to = make_room(p, kept + 1);
     if (star.closed) {
-        row[count++] = {child, last_corner + 2};
+        *to++ = {child, last_corner + 2};
         for (std::uint32_t i = end; i < begin + n; ++i)
-            row[count++] = {star.ring[wrapped(i)], star.corner[wrapped(i)]};
-        row[count++] = {first_at, first_corner + 1};
+            *to++ = {star.ring[wrapped(i)], star.corner[wrapped(i)]};
+        *to++ = {first_at, first_corner + 1};
     } else {
         if (cut.first_wing) {
-            for (std::uint32_t i = 0; i < begin; ++i) row[count++] = {star.ring[i], star.corner[i]};
-            row[count++] = {first_at, first_corner + 1};
+            for (std::uint32_t i = 0; i < begin; ++i) *to++ = {star.ring[i], star.corner[i]};
+            *to++ = {first_at, first_corner + 1};
         }
-        row[count++] = {child, cut.last_wing ? last_corner + 2 : kNoVertex};
+        *to++ = {child, cut.last_wing ? last_corner + 2 : kNoVertex};
         if (cut.last_wing) {
-            for (std::uint32_t i = end; i < n; ++i) row[count++] = {star.ring[i], star.corner[i]};
-            row[count++] = {star.ring[n], kNoVertex};
+            for (std::uint32_t i = end; i < n; ++i) *to++ = {star.ring[i], star.corner[i]};
+            *to++ = {star.ring[n], kNoVertex};
         }
     }
-    store_fan(p, row.data(), count, star.closed);
-    sum_around(p, star.closed);
+    LiveVertex& parent = vertices[p];
+    set_fan(parent, kept, star.closed);
+    for (std::size_t k = 0; k < 3; ++k) parent.ring[k] -= run[k];
+    for (int i = 0; i < 2; ++i) {
+        if (!(i == 0 ? cut.last_wing : cut.first_wing)) continue;
+        const Lattice3& wing = vertices[i == 0 ? last_at : first_at].at;
+        add(born.ring, wing);
+        add(born.ring, parent_at);
+        add(parent.ring, wing);
+        add(parent.ring, child_at);
+    }
 
     // And what their neighbours see: by how much the centre of each sector moves, and the new triangles.
     std::array<std::uint32_t, 3> stays, goes, both;
     for (std::size_t k = 0; k < 3; ++k) {
         stays[k] = static_cast<std::uint32_t>(parent_at[k] - was[k]);
-        goes[k] = static_cast<std::uint32_t>(child_at[k] - was[k]);
+        goes[k] = static_cast<std::uint32_t>(child_at[k] - parent_at[k]);
         both[k] = static_cast<std::uint32_t>(parent_at[k] + child_at[k]);
     }
-    const auto taken = [&](std::uint32_t i) { return (i >= begin ? i : i + n) - begin < length; };
-    bool before = star.closed && taken(n - 1);
-    for (std::uint32_t i = 0; i < ring; ++i) {
-        const bool has_left = star.closed || i > 0, has_right = star.closed || i < n,
-                   right = has_right && taken(i);
-        const std::uint32_t goes_times = std::uint32_t{before} + std::uint32_t{right},
-                            stays_times = std::uint32_t{has_left} + std::uint32_t{has_right} - goes_times;
-        LiveVertex& here = vertices[star.ring[i]];
-        for (std::size_t k = 0; k < 3; ++k) here.ring[k] += goes_times * goes[k] + stays_times * stays[k];
-        before = right;
-    }
+    if (parent_at != was)
+        for (std::uint32_t i = 0; i < ring; ++i) {
+            LiveVertex& here = vertices[star.ring[i]];
+            const std::uint32_t sectors = !star.closed && (i == 0 || i == n) ? 1 : 2;
+            for (std::size_t k = 0; k < 3; ++k) here.ring[k] += sectors * stays[k];
+        }
     for (std::uint32_t i = begin; i <= end; ++i) {
         const std::uint32_t w = star.ring[wrapped(i)];
+        LiveVertex& here = vertices[w];
+        const std::uint32_t sectors = std::uint32_t{i > begin} + std::uint32_t{i < end};
+        for (std::size_t k = 0; k < 3; ++k) here.ring[k] += sectors * goes[k];
         const bool first = i == begin && cut.first_wing, last = i == end && cut.last_wing;
-        if (!first && !last) {
+        if (first || last) {
+            insert(w, p, child, first ? first_corner + 2 : last_corner + 1, last);
+            for (std::size_t k = 0; k < 3; ++k) here.ring[k] += both[k];
+        } else {
             replace(w, p, child);
-            continue;
         }
-        insert(w, p, child, first ? first_corner + 2 : last_corner + 1, last);
-        for (std::size_t k = 0; k < 3; ++k) vertices[w].ring[k] += both[k];
     }
 }
 

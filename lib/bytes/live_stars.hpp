@@ -29,6 +29,7 @@ struct LiveVertex {
         ring{};  ///< Sum, over the star's triangles, of the two other corners' places; modulo 2^32.
     std::uint32_t star = 0;     ///< Triangles in it.
     std::uint32_t touched = 0;  ///< The last sweep that changed its star, from 1.
+    std::uint32_t locked = 0;   ///< Of a batch: triangles of the star that it has changed, if touched in it.
     std::uint32_t acted = 0;    ///< The last in which it was born, split or moved.
     std::uint32_t twin = 0;     ///< The next in the ring of vertices born at the same place.
     std::uint32_t more = 0;     ///< Where its list goes on if it is long.
@@ -97,16 +98,22 @@ class LiveStars {
     /// How far a vertex is from the mean of its neighbours, in 1/16; zeros where the star is empty or vast.
     Lattice3 bump(std::uint32_t vertex) const;
 
-    /// Has the memory read ahead that a split of this vertex needs: 0 its list, 1 its ring, 2 nothing more.
+    /// Has the memory read ahead that asking for a split of this vertex needs: 0 its list, 1 its ring.
     void fetch(std::uint32_t vertex, int stage) const {
-        if (stage == 0) return __builtin_prefetch(&lines_[vertex]);
-        if (stage != 1) return;
         const LiveVertex& v = vertices[vertex];
-        if (v.power != 0 || !v.is_fan()) return;
-        for (const Slot& slot : std::span(lines_[vertex].slot).first(v.slots())) {
-            __builtin_prefetch(&vertices[slot.vertex], 1);
-            __builtin_prefetch(&lines_[slot.vertex], 1);
+        const Slot* const slot = list(vertex);
+        if (stage == 0) {
+            __builtin_prefetch(slot);
+            if (v.power > 0) __builtin_prefetch(slot + kLine);
+        } else if (stage == 1 && v.is_fan()) {
+            for (std::uint32_t i = 0; i < v.slots(); ++i) __builtin_prefetch(&vertices[slot[i].vertex], 1);
         }
+    }
+    /// And what the split itself changes.
+    void fetch(const Star& star) const {
+        for (std::uint32_t i = 0; i < star.ring_size(); ++i) __builtin_prefetch(list(star.ring[i]), 1);
+        for (std::uint32_t i = 0; i < star.size; ++i)
+            __builtin_prefetch(triangles.data()->data() + star.corner[i], 1);
     }
 
   private:
@@ -132,7 +139,7 @@ class LiveStars {
     Slot* grow(std::uint32_t vertex, std::uint32_t slots);
     /// Finds out whether the star of a vertex is a fan, and puts its list in order if so.
     void order(std::uint32_t vertex);
-    void store_fan(std::uint32_t vertex, const Slot* slots, std::uint32_t count, bool closed);
+    static void set_fan(LiveVertex& vertex, std::uint32_t triangles, bool closed);
     /// In the list of a neighbour of a split vertex.
     void replace(std::uint32_t vertex, std::uint32_t parent, std::uint32_t child);
     void insert(std::uint32_t vertex, std::uint32_t parent, std::uint32_t child, std::uint32_t corner,

@@ -45,16 +45,19 @@ struct NumberModel {
 /// digits by how the count departs from the scale.
 template <std::size_t Scales, std::size_t Kinds = 1>
 struct ResidualModel {
+    static constexpr std::uint32_t kNoSide = 64;
     static constexpr std::int32_t kFurthest = 24;  ///< Digits of the largest difference.
     std::array<SymbolModel<5>, Scales * Kinds> digits;
     std::array<std::array<BitModel, 4>, 64> second;
-    std::array<BitModel, 64> sign;
+    std::array<BitModel, kNoSide> sign;
 
     /// Digit counts that a prior of `rising` expects at each scale: see digit_prior().
     ResidualModel();
 
+    /// `side`: what tells the sign, 0 to 63; kNoSide: nothing does.
     template <class Coder>
-    std::int32_t code(Coder& coder, std::uint32_t scale, std::uint32_t kind, std::int32_t value) {
+    std::int32_t code(Coder& coder, std::uint32_t scale, std::uint32_t kind, std::int32_t value,
+                      std::uint32_t side = kNoSide) {
         if (scale >= Scales) scale = Scales - 1;
         const std::uint32_t magnitude = static_cast<std::uint32_t>(value < 0 ? -value : value);
         const std::uint32_t count =
@@ -66,10 +69,15 @@ struct ResidualModel {
         std::uint32_t read = 1;
         if (count > 1) read = 2 * read + coder.bit(second[relative][0], magnitude >> (count - 2) & 1);
         if (count > 2) read = 2 * read + coder.bit(second[relative][read - 1], magnitude >> (count - 3) & 1);
-        if (count > 3)
-            read = (read << (count - 3)) | coder.raw(count - 3, magnitude & ((1u << (count - 3)) - 1));
-        const bool negative = coder.raw(1, value < 0) != 0;
-        return negative ? -static_cast<std::int32_t>(read) : static_cast<std::int32_t>(read);
+        // The other digits, and the sign with them unless something tells it.
+        const std::uint32_t rest = count > 3 ? count - 3 : 0;
+        std::uint32_t raw = (magnitude & ((1u << rest) - 1)) << 1 | std::uint32_t{value < 0};
+        if (side == kNoSide)
+            raw = coder.raw(rest + 1, raw);
+        else
+            raw = coder.raw(rest, raw >> 1) << 1 | std::uint32_t{coder.bit(sign[side], value < 0)};
+        read = read << rest | raw >> 1;
+        return (raw & 1) != 0 ? -static_cast<std::int32_t>(read) : static_cast<std::int32_t>(read);
     }
 };
 

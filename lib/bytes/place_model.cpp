@@ -3,15 +3,10 @@
 #include "place_model.hpp"
 
 #include <algorithm>
+#include <bit>
+#include <tuple>
 
 namespace vsplit {
-namespace {
-
-std::array<std::int64_t, 3> minus(const Lattice3& a, const Lattice3& b) {
-    return {std::int64_t{a[0]} - b[0], std::int64_t{a[1]} - b[1], std::int64_t{a[2]} - b[2]};
-}
-
-}  // namespace
 
 PlaceWeights default_place_weights() {
     PlaceWeights weights{};
@@ -23,15 +18,34 @@ PlaceWeights default_place_weights() {
     return weights;
 }
 
-std::array<std::int64_t, 3> PlaceModel::mix(const PlaceGuides& g, std::size_t row) const {
-    const auto& w = weights_[static_cast<std::size_t>(g.kind)][g.ring_class][row];
-    std::array<std::int64_t, 3> out;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        std::int64_t sum = 32;
-        for (std::size_t i = 0; i < kPlaceGuides; ++i) sum += std::int64_t{w[i]} * g.guide[i][axis];
-        out[axis] = sum >> 6;
+/// Offsets from the parent's old place of the ring's vertices, then of the vertex across from it, and sums
+/// over the ring.
+struct PlaceModel::Around {
+    std::array<std::array<std::int32_t, 3>, std::tuple_size_v<decltype(Ring::vertex)> + 1> offset;
+    std::array<std::int64_t, 3> sum, bumps;
+};
+
+VSPLIT_INLINE void PlaceModel::look_around(const LiveStars& mesh, const Ring& ring, const Lattice3& from,
+                                           Around& around) {
+    std::int64_t sx = 0, sy = 0, sz = 0, bx = 0, by = 0, bz = 0;
+    const std::int32_t fx = from[0], fy = from[1], fz = from[2];
+    for (std::uint32_t i = 0; i < ring.size; ++i) {
+        const LiveVertex& v = mesh.vertices[ring.vertex[i]];
+        const std::int32_t x = v.at[0] - fx, y = v.at[1] - fy, z = v.at[2] - fz;
+        around.offset[i] = {x, y, z};
+        sx += x, sy += y, sz += z;
+        if (v.star - 1 < 128) {
+            const std::int64_t reciprocal = kReciprocals[2 * v.star];
+            const auto share = [&](std::uint32_t sum) {
+                return (static_cast<std::int32_t>(sum) * reciprocal) >> 12;
+            };
+            bx += 16 * v.at[0] - share(v.ring[0]);
+            by += 16 * v.at[1] - share(v.ring[1]);
+            bz += 16 * v.at[2] - share(v.ring[2]);
+        }
     }
-    return out;
+    around.sum = {sx, sy, sz};
+    around.bumps = {bx, by, bz};
 }
 
 PlaceGuides PlaceModel::guide_birth(const LiveStars& mesh, std::uint32_t parent, const Ring& ring,
@@ -40,20 +54,16 @@ PlaceGuides PlaceModel::guide_birth(const LiveStars& mesh, std::uint32_t parent,
     g.kind = moving ? PlaceKind::kBirthMoving : PlaceKind::kBirth;
     g.ring_class = ring.open ? 6 : std::clamp<std::uint32_t>(ring.size, 2, 7) - 2;
     g.from = mesh.vertices[parent].at;
-    std::array<std::int64_t, 3> sum{}, bumps{};
-    for (std::uint32_t i = 0; i < ring.size; ++i) {
-        const auto d = minus(mesh.vertices[ring.vertex[i]].at, g.from);
-        const Lattice3 bump = mesh.bump(ring.vertex[i]);
-        for (std::size_t a = 0; a < 3; ++a) sum[a] += d[a], bumps[a] += bump[a];
-    }
-    const auto first = minus(mesh.vertices[ring.vertex[0]].at, g.from),
-               last = minus(mesh.vertices[ring.vertex[ring.size - 1]].at, g.from);
+    Around around;
+    look_around(mesh, ring, g.from, around);
+    around.offset[ring.size] = {};
+    const auto &first = around.offset[0], &last = around.offset[ring.size - 1];
     for (std::size_t a = 0; a < 3; ++a) {
-        g.guide[0][a] = static_cast<std::int32_t>(mean16(sum[a], ring.size));
-        g.guide[1][a] = static_cast<std::int32_t>(8 * (first[a] + last[a]));
-        g.guide[2][a] = static_cast<std::int32_t>(mean16(bumps[a], ring.size) >> 4);
+        g.guide[0][a] = static_cast<std::int32_t>(mean16(around.sum[a], ring.size));
+        g.guide[1][a] = 8 * (first[a] + last[a]);
+        g.guide[2][a] = static_cast<std::int32_t>(mean16(around.bumps[a], ring.size) >> 4);
     }
-    measure(mesh, ring, g.from, g);
+    measure(around, ring.size + 1, g);
     return g;
 }
 
@@ -63,39 +73,47 @@ PlaceGuides PlaceModel::guide_move(const LiveStars& mesh, std::uint32_t parent, 
     g.kind = PlaceKind::kMove;
     g.ring_class = ring.open ? 6 : std::clamp<std::uint32_t>(ring.size, 2, 7) - 2;
     g.from = mesh.vertices[parent].at;
-    const auto to_child = minus(child, g.from);
-    std::array<std::int64_t, 3> sum = to_child, bumps{};
-    for (std::uint32_t i = 0; i < ring.size; ++i) {
-        const auto d = minus(mesh.vertices[ring.vertex[i]].at, g.from);
-        const Lattice3 bump = mesh.bump(ring.vertex[i]);
-        for (std::size_t a = 0; a < 3; ++a) sum[a] += d[a], bumps[a] += bump[a];
-    }
+    Around around;
+    look_around(mesh, ring, g.from, around);
+    auto& to_child = around.offset[ring.size];
     for (std::size_t a = 0; a < 3; ++a) {
-        g.guide[0][a] = static_cast<std::int32_t>(16 * to_child[a]);
-        g.guide[1][a] = static_cast<std::int32_t>(mean16(sum[a], ring.size + 1));
-        g.guide[2][a] = ring.size == 0 ? 0 : static_cast<std::int32_t>(mean16(bumps[a], ring.size) >> 4);
+        to_child[a] = child[a] - g.from[a];
+        around.sum[a] += to_child[a];
+        g.guide[0][a] = 16 * to_child[a];
+        g.guide[1][a] = static_cast<std::int32_t>(mean16(around.sum[a], ring.size + 1));
+        g.guide[2][a] =
+            ring.size == 0 ? 0 : static_cast<std::int32_t>(mean16(around.bumps[a], ring.size) >> 4);
     }
-    measure(mesh, ring, child, g);
+    measure(around, ring.size + 1, g);
     return g;
 }
 
-void PlaceModel::measure(const LiveStars& mesh, const Ring& ring, const Lattice3& extra,
-                         PlaceGuides& g) const {
+VSPLIT_INLINE void PlaceModel::measure(const Around& around, std::uint32_t count, PlaceGuides& g) const {
+    const auto& w = weights_[static_cast<std::size_t>(g.kind)][g.ring_class];
+    for (std::size_t row = 0; row < 2; ++row)
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            std::int64_t sum = 32;
+            for (std::size_t i = 0; i < kPlaceGuides; ++i) sum += std::int64_t{w[row][i]} * g.guide[i][axis];
+            (row == 0 ? g.along : g.beyond)[axis] = sum >> 6;
+        }
+
     // The polygon of the ring and the vertex across from it: twice its area as a vector.
-    const std::uint32_t count = ring.size + 1;
-    const auto at = [&](std::uint32_t i) -> const Lattice3& {
-        return i == ring.size ? extra : mesh.vertices[ring.vertex[i]].at;
-    };
-    std::array<std::int64_t, 3> normal{}, centre{};
-    auto before = minus(at(count - 1), g.from);
+    std::int64_t nx = 0, ny = 0, nz = 0, sx = 0, sy = 0, sz = 0;
+    std::int64_t px = around.offset[count - 1][0], py = around.offset[count - 1][1],
+                 pz = around.offset[count - 1][2];
     for (std::uint32_t i = 0; i < count; ++i) {
-        const auto now = minus(at(i), g.from);
-        normal[0] += before[1] * now[2] - before[2] * now[1];
-        normal[1] += before[2] * now[0] - before[0] * now[2];
-        normal[2] += before[0] * now[1] - before[1] * now[0];
-        for (std::size_t a = 0; a < 3; ++a) centre[a] += now[a];
-        before = now;
+        const std::int64_t x = around.offset[i][0], y = around.offset[i][1], z = around.offset[i][2];
+        nx += py * z - pz * y;
+        ny += pz * x - px * z;
+        nz += px * y - py * x;
+        sx += std::abs(16 * x - g.along[0]);
+        sy += std::abs(16 * y - g.along[1]);
+        sz += std::abs(16 * z - g.along[2]);
+        px = x, py = y, pz = z;
     }
+    const std::array<std::int64_t, 3> normal{nx, ny, nz}, spread{sx, sy, sz};
+    // guide_move() counts the child already.
+    const std::array<std::int64_t, 3>& centre = around.sum;
     std::size_t c = 2;
     std::uint64_t largest = 0;
     for (std::size_t a = 0; a < 3; ++a) {
@@ -106,35 +124,46 @@ void PlaceModel::measure(const LiveStars& mesh, const Ring& ring, const Lattice3
     const int excess = std::max(0, static_cast<int>(std::bit_width(largest)) - 24);
     for (std::size_t a = 0; a < 3; ++a) g.normal[a] = normal[a] >> excess;
     g.across = c;
-
-    const auto along = mix(g, 0);
-    std::array<std::int64_t, 3> spread{};
-    for (std::uint32_t i = 0; i < count; ++i) {
-        const auto d = minus(at(i), g.from);
-        for (std::size_t a = 0; a < 3; ++a) spread[a] += std::abs(16 * d[a] - along[a]);
-    }
     for (std::size_t a = 0; a < 3; ++a)
         g.spread[a] = static_cast<std::uint32_t>((spread[a] / 4 * kReciprocals[count]) >> 16);
-    g.roughness = 0;
-    if (g.normal[c] != 0) {
-        // Distances of the polygon's corners, and of the point predicted, from the plane through their
-        // middle.
-        std::array<std::int64_t, 3> middle;
-        for (std::size_t a = 0; a < 3; ++a) middle[a] = mean16(centre[a], count);
-        const auto height = [&](const std::array<std::int64_t, 3>& d) {
-            return (d[0] - middle[0]) * g.normal[0] + (d[1] - middle[1]) * g.normal[1] +
-                   (d[2] - middle[2]) * g.normal[2];
-        };
-        std::int64_t sum = 0;
-        for (std::uint32_t i = 0; i < count; ++i) {
-            const auto d = minus(at(i), g.from);
-            sum += std::abs(height({16 * d[0], 16 * d[1], 16 * d[2]})) >> 4;
-        }
-        const std::int64_t mean = (sum >> 8) * kReciprocals[count] >> 8;
-        const std::int64_t predicted = std::abs(height(mix(g, 1))) >> 4;
-        g.roughness = static_cast<std::uint32_t>(
-            std::min<std::int64_t>(4 * (mean + predicted / 2) / std::abs(g.normal[c]), 1 << 26));
+    // How one axis follows the other, and distances of the polygon's corners, and of the point predicted,
+    // from the plane through their middle.
+    const auto height = [&](std::int64_t x, std::int64_t y, std::int64_t z) {
+        return x * g.normal[0] + y * g.normal[1] + z * g.normal[2];
+    };
+    const std::int64_t middle =
+        height(mean16(centre[0], count), mean16(centre[1], count), mean16(centre[2], count));
+    const std::int64_t mx = g.normal[0], my = g.normal[1], mz = g.normal[2];
+    const std::size_t first = c == 0 ? 1 : 0, second = c == 2 ? 1 : 2;
+    std::int64_t sum = 0, squares = 0, products = 0;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const auto& d = around.offset[i];
+        const std::int64_t x = d[0], y = d[1], z = d[2];
+        sum += std::abs(16 * (x * mx + y * my + z * mz) - middle) >> 4;
+        squares += std::int64_t{d[first]} * d[first];
+        products += std::int64_t{d[first]} * d[second];
     }
+    squares = count * squares - centre[first] * centre[first];
+    products = count * products - centre[first] * centre[second];
+    g.lean = 0;
+    if (squares > 0) {
+        const int over =
+            std::max(0, static_cast<int>(std::bit_width(static_cast<std::uint64_t>(squares))) - 50);
+        squares >>= over;
+        products >>= over;
+        const std::int64_t most = 4 * squares;
+        g.lean = static_cast<std::int32_t>(768 * std::clamp(products, -most, most) / squares);
+    }
+    g.roughness = 0;
+    if (g.normal[c] == 0) return;
+    const std::int64_t mean = (sum >> 8) * kReciprocals[count] >> 8;
+    const std::int64_t over = height(g.beyond[0], g.beyond[1], g.beyond[2]) - middle,
+                       predicted = std::abs(over) >> 4;
+    g.rise = static_cast<std::int32_t>(half_octave(static_cast<std::uint64_t>(4 * predicted))) -
+             static_cast<std::int32_t>(half_octave(static_cast<std::uint64_t>(std::abs(g.normal[c]))));
+    g.sinks = (over < 0) != (g.normal[c] < 0);
+    g.roughness = static_cast<std::uint32_t>(
+        std::min<std::int64_t>(4 * (mean + predicted / 2) / std::abs(g.normal[c]), 1 << 26));
 }
 
 }  // namespace vsplit

@@ -34,11 +34,17 @@ struct PlaceGuides {
     std::uint32_t ring_class = 0;
     Lattice3 from{};  ///< The parent's old place.
     std::array<std::array<std::int32_t, 3>, kPlaceGuides> guide{};
+    /// What the weights make of them: along the surface, and the point on the plane that it is coded across.
+    std::array<std::int64_t, 3> along{}, beyond{};
     std::array<std::int64_t, 3>
         normal{};            ///< Of the ring's polygon; its largest component is that of `across`.
     std::size_t across = 2;  ///< The axis coded last.
+    std::int32_t lean = 0;   ///< By how much the second axis follows the first, in 1/1024.
     std::array<std::uint32_t, 3> spread{};  ///< Mean distance of ring and prediction along each axis, in 1/4.
-    std::uint32_t roughness = 0;            ///< How far the ring is from flat, along `across`, in 1/4.
+    std::int32_t rise =
+        0;               ///< log2 of how high the point predicted is over the ring, in half octaves of 1/4.
+    bool sinks = false;  ///< That is towards lesser numbers along `across`.
+    std::uint32_t roughness = 0;  ///< How far the ring is from flat, along `across`, in 1/4.
 };
 
 /// `polygon` is the ring of the vertex to place, in order; `through` tells its first and last (the wings).
@@ -65,13 +71,13 @@ class PlaceModel {
     Lattice3 code_free(Coder& coder, const Lattice3& near, const Lattice3& place);
 
   private:
-    /// The point that the weights of `row` (0 along, 1 across) make of the guides, in 1/16.
-    std::array<std::int64_t, 3> mix(const PlaceGuides& guides, std::size_t row) const;
-    void measure(const LiveStars& mesh, const Ring& ring, const Lattice3& extra, PlaceGuides& guides) const;
+    struct Around;
+    static void look_around(const LiveStars& mesh, const Ring& ring, const Lattice3& from, Around& around);
+    void measure(const Around& around, std::uint32_t count, PlaceGuides& guides) const;
 
     PlaceWeights weights_;
-    ResidualModel<56, 3> first_[kPlaceKinds];
-    ResidualModel<56, 3> second_[kPlaceKinds];
+    ResidualModel<56, 6> first_[kPlaceKinds];
+    ResidualModel<56, 6> second_[kPlaceKinds];
     ResidualModel<56, 4> third_[kPlaceKinds];
     ResidualModel<1> free_;
 };
@@ -101,7 +107,7 @@ Lattice3 PlaceModel::code(Coder& coder, PlaceGuides& g, const Lattice3& place, b
     if (!Coder::kWrites && !Coder::kDecodes && !rough) return place;
     const std::size_t c = g.across, a = c == 0 ? 1 : 0, b = c == 2 ? 1 : 2,
                       kind = static_cast<std::size_t>(g.kind);
-    const auto along = mix(g, 0), across = mix(g, 1);
+    const auto &along = g.along, &across = g.beyond;
     Lattice3 out{};
     const auto predicted = [&](std::size_t axis) {
         return within_reach(g.from[axis] + ((along[axis] + 8) >> 4));
@@ -115,13 +121,18 @@ Lattice3 PlaceModel::code(Coder& coder, PlaceGuides& g, const Lattice3& place, b
     const auto in_steps = [](std::int32_t difference, std::uint32_t shift) {
         return shift == 0 ? difference : (difference + (1 << (shift - 1))) >> shift;
     };
-    const std::int32_t at_a = predicted(a), at_b = predicted(b);
-    const std::int32_t step_a =
-        first_[kind].code(coder, scale_a - 2 * shift_a, bent, in_steps(place[a] - at_a, shift_a));
+    // A vertex of six neighbours is often of a regular part of the mesh, and where it is expected.
+    const std::uint32_t regular = g.ring_class == 3;
+    const std::int32_t at_a = predicted(a), unleant_b = predicted(b);
+    const std::int32_t step_a = first_[kind].code(coder, scale_a - 2 * shift_a, bent + 3 * regular,
+                                                  in_steps(place[a] - at_a, shift_a));
     out[a] = within_reach(at_a + std::int64_t{step_a} * (1 << shift_a));
     const std::uint32_t missed_a = departure_class(step_a, scale_a - 2 * shift_a);
-    const std::int32_t step_b =
-        second_[kind].code(coder, scale_b - 2 * shift_b, missed_a, in_steps(place[b] - at_b, shift_b));
+    // Where the ring leans, the second axis goes with the first.
+    const std::int32_t at_b =
+        within_reach(unleant_b + ((std::int64_t{g.lean} * (out[a] - at_a) + 512) >> 10));
+    const std::int32_t step_b = second_[kind].code(coder, scale_b - 2 * shift_b, missed_a + 3 * regular,
+                                                   in_steps(place[b] - at_b, shift_b));
     out[b] = within_reach(at_b + std::int64_t{step_b} * (1 << shift_b));
     const std::uint32_t missed = std::max(missed_a, departure_class(step_b, scale_b - 2 * shift_b));
     // Along the plane of the ring, from the point that the second row of weights predicts.
@@ -133,11 +144,14 @@ Lattice3 PlaceModel::code(Coder& coder, PlaceGuides& g, const Lattice3& place, b
     const std::int64_t slid = slide(16 * (std::int64_t{out[a]} - g.from[a]) - across[a],
                                     16 * (std::int64_t{out[b]} - g.from[b]) - across[b]);
     const std::int32_t at_c = within_reach(g.from[c] + ((across[c] - slid + 8) >> 4));
+    // Predictions go too far as a rule, or not far enough.
+    const std::int32_t height = std::clamp(g.rise - static_cast<std::int32_t>(mean_scale) + 11, 0, 11);
+    const std::uint32_t side = 2 * static_cast<std::uint32_t>(height) + std::uint32_t{g.sinks};
     std::int64_t wanted_c = place[c];
     if (!Coder::kDecodes && rough)  // as high over the plane as the place asked for
         wanted_c -= slide(std::int64_t{out[a]} - place[a], std::int64_t{out[b]} - place[b]);
     out[c] = within_reach(std::int64_t{at_c} +
-                          third_[kind].code(coder, flatness, missed, within_reach(wanted_c) - at_c));
+                          third_[kind].code(coder, flatness, missed, within_reach(wanted_c) - at_c, side));
     return out;
 }
 

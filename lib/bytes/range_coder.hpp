@@ -84,15 +84,14 @@ class RangeEncoder {
         return value;
     }
 
-    /// One of several, each as likely as its weight says; the weights' sum is at most 2^22.
-    std::size_t pick(std::span<const std::uint32_t> weights, std::uint32_t sum, std::size_t value) {
-        std::uint32_t before = 0;
-        for (std::size_t i = 0; i < value; ++i) before += weights[i];
+    /// One of several, each as likely as its weight says: point() with the weights' sum, at most 2^22, then
+    /// take() with the weight of the one at that point and the sum of those before it.
+    std::uint32_t point(std::uint32_t) { return 0; }
+    void take(std::uint32_t before, std::uint32_t weight, std::uint32_t sum) {
         const std::uint32_t unit = range_ / sum;
         low_ += std::uint64_t{unit} * before;
-        range_ = unit * weights[value];
+        range_ = unit * weight;
         normalise();
-        return value;
     }
 
     /// Ends the stream and gives its bytes away; the encoder begins another.
@@ -147,7 +146,8 @@ struct NoCoder {
     bool bit(BitModel&, bool value) { return value; }
     bool weighed(std::uint32_t, bool value) { return value; }
     std::uint32_t raw(std::uint32_t, std::uint32_t value) { return value; }
-    std::size_t pick(std::span<const std::uint32_t>, std::uint32_t, std::size_t value) { return value; }
+    std::uint32_t point(std::uint32_t) { return 0; }
+    void take(std::uint32_t, std::uint32_t, std::uint32_t) {}
     bool overrun() const { return false; }
 };
 
@@ -186,17 +186,17 @@ class RangeDecoder {
         return value;
     }
 
-    std::size_t pick(std::span<const std::uint32_t> weights, std::uint32_t sum, std::size_t = 0) {
-        const std::uint32_t unit = range_ / sum;
-        const std::uint32_t at = code_ / unit;
-        std::uint32_t before = 0;
-        std::size_t value = 0;
-        while (value + 1 < weights.size() && at - before >= weights[value]) before += weights[value++];
-        code_ -= unit * before;
-        range_ = unit * weights[value];
+    /// Below `sum`.
+    std::uint32_t point(std::uint32_t sum) {
+        unit_ = range_ / sum;
+        const std::uint32_t at = code_ / unit_;
+        return at < sum ? at : sum - 1;  // only a forged stream comes here
+    }
+    void take(std::uint32_t before, std::uint32_t weight, std::uint32_t) {
+        code_ -= unit_ * before;
+        range_ = unit_ * weight;
         if (code_ >= range_) code_ = range_ - 1;  // only a forged stream comes here
         normalise();
-        return value;
     }
 
     /// Bytes taken so far; more than there are if the stream is too short.
@@ -225,7 +225,7 @@ class RangeDecoder {
     }
 
     std::span<const std::byte> bytes_;
-    std::uint32_t range_ = 0xFFFFFFFFu, code_ = 0;
+    std::uint32_t range_ = 0xFFFFFFFFu, code_ = 0, unit_ = 0;
     std::size_t taken_ = 0;
 };
 

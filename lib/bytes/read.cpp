@@ -113,14 +113,16 @@ BlockDecoder::BlockDecoder(BlockDecoder&&) noexcept = default;
 BlockDecoder& BlockDecoder::operator=(BlockDecoder&&) noexcept = default;
 BlockDecoder::~BlockDecoder() = default;
 
-Result<BlockDecoder> BlockDecoder::begin(std::span<const std::byte> front, const Limits& limits) {
+Result<BlockDecoder> BlockDecoder::begin(std::span<const std::byte> front, const Limits& limits,
+                                         const BaseMeshDecoder& decode_base_mesh) {
     auto read = read_info(front, limits);
     if (!read) return read.error();
     const FileInfo& info = *read;
     const auto base_bytes = front.subspan(info.base_offset, info.base_bytes);
     if (checksum64(base_bytes) != info.base_checksum)
         return at(info.base_offset, ErrorCode::kChecksum, "the base mesh's checksum does not match");
-    auto base = decode_base(base_bytes.first(info.base_draco_bytes), info.base_vertices, info.base_triangles);
+    auto base = decode_base(base_bytes.first(info.base_draco_bytes), info.base_vertices, info.base_triangles,
+                            decode_base_mesh);
     if (!base) return at(info.base_offset, base.error().code, base.error().message);
     const char* fault = nullptr;
     std::size_t in_details = 0;
@@ -171,8 +173,9 @@ Status BlockDecoder::decode(std::span<const std::byte> stored) {
 namespace {
 
 /// Decodes blocks as long as they are whole.
-Result<BlockDecoder> decode_prefix(std::span<const std::byte> bytes, const Limits& limits) {
-    auto decoder = BlockDecoder::begin(bytes, limits);
+Result<BlockDecoder> decode_prefix(std::span<const std::byte> bytes, const Limits& limits,
+                                   const BaseMeshDecoder& decode_base_mesh) {
+    auto decoder = BlockDecoder::begin(bytes, limits, decode_base_mesh);
     if (!decoder) return decoder.error();
     for (const BlockInfo& block : decoder->info().blocks) {
         if (block.offset + block.bytes > bytes.size()) break;
@@ -217,7 +220,8 @@ Result<ProgressiveMesh> checked(BlockDecoder decoder) {
 
 }  // namespace
 
-Result<ProgressiveMesh> read_progressive_mesh(std::span<const std::byte> bytes, const Limits& limits) {
+Result<ProgressiveMesh> read_progressive_mesh(std::span<const std::byte> bytes, const Limits& limits,
+                                              const BaseMeshDecoder& decode_base_mesh) {
     auto read = read_info(bytes, limits);
     if (!read) return read.error();
     if (bytes.size() < read->file_bytes)
@@ -225,13 +229,14 @@ Result<ProgressiveMesh> read_progressive_mesh(std::span<const std::byte> bytes, 
                   "the file ends here, but announces " + std::to_string(read->file_bytes) + " bytes");
     if (bytes.size() > read->file_bytes)
         return at(read->file_bytes, ErrorCode::kMalformed, "the file goes on behind its announced end");
-    auto decoder = decode_prefix(bytes, limits);
+    auto decoder = decode_prefix(bytes, limits, decode_base_mesh);
     if (!decoder) return decoder.error();
     return checked(*std::move(decoder));
 }
 
-Result<ProgressiveMesh> read_prefix(std::span<const std::byte> bytes, const Limits& limits) {
-    auto decoder = decode_prefix(bytes, limits);
+Result<ProgressiveMesh> read_prefix(std::span<const std::byte> bytes, const Limits& limits,
+                                    const BaseMeshDecoder& decode_base_mesh) {
+    auto decoder = decode_prefix(bytes, limits, decode_base_mesh);
     if (!decoder) return decoder.error();
     return checked(*std::move(decoder));
 }

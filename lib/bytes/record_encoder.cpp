@@ -157,17 +157,20 @@ std::uint32_t RecordEncoder::last_move(std::uint32_t vertex, const Split& from, 
 void RecordEncoder::plan(std::uint32_t number, SplitPlan& out) {
     out.clear();
     const Split from = before(number), to = mesh_.splits[number];
-    births_.clear();
+    births_.resize(to.vertices_end - from.vertices_end);  // lists keep their memory
     for (std::uint32_t v = from.vertices_end; v < to.vertices_end; ++v) {
-        Born born{v, mesh_.parents[v] == kNoVertex ? kNoVertex : vertex_[mesh_.parents[v]], kNoVertex, {}};
-        if (numbers_.traded[v]) born.traded_move = last_move(mesh_.parents[v], from, to);
+        Born& born = births_[v - from.vertices_end];
+        born.vertex = v;
+        born.parent = mesh_.parents[v] == kNoVertex ? kNoVertex : vertex_[mesh_.parents[v]];
+        born.traded_move = numbers_.traded[v] ? last_move(mesh_.parents[v], from, to) : kNoVertex;
+        born.taken.clear();
         for (std::uint32_t c = from.corners_end; c < to.corners_end; ++c)
-            if (mesh_.corner_changes[c].vertex == v) born.taken.push_back(mesh_.corner_changes[c].corner / 3);
-        for (std::uint32_t& t : born.taken) t = triangle_[t];
-        births_.push_back(std::move(born));
+            if (mesh_.corner_changes[c].vertex == v)
+                born.taken.push_back(triangle_[mesh_.corner_changes[c].corner / 3]);
     }
-    std::stable_sort(births_.begin(), births_.end(),
-                     [](const Born& a, const Born& b) { return a.parent < b.parent; });
+    if (births_.size() > 1)
+        std::stable_sort(births_.begin(), births_.end(),
+                         [](const Born& a, const Born& b) { return a.parent < b.parent; });
 
     const auto stride = static_cast<std::ptrdiff_t>(numbers_.stride);
     const std::uint32_t alive = codec_.live.vertex_count();
@@ -242,16 +245,46 @@ void RecordEncoder::code_base(Coder& coder) {
     codec_.code_base(coder);
 }
 
+void RecordEncoder::fetch(const Sweep& sweep, std::size_t step) const {
+    const auto at = [&](std::size_t ahead) {
+        return step + ahead < sweep.steps.size() ? &sweep.steps[step + ahead] : nullptr;
+    };
+    if (const Sweep::Step* far = at(12)) __builtin_prefetch(&mesh_.splits[far->split]);
+    if (const Sweep::Step* far = at(8)) {
+        const Split from = before(far->split);
+        __builtin_prefetch(numbers_.birth_at.data() + from.vertices_end);
+        __builtin_prefetch(mesh_.parents.data() + from.vertices_end);
+        __builtin_prefetch(mesh_.triangles.data() + from.triangles_end);
+        __builtin_prefetch(mesh_.corner_changes.data() + from.corners_end);
+        __builtin_prefetch(numbers_.move_at.data() + from.moves_end);
+        if (far->primary < codec_.live.vertex_count())
+            __builtin_prefetch(&codec_.live.vertices[far->primary]);
+    }
+    if (const Sweep::Step* near = at(6)) {
+        const Split from = before(near->split), to = mesh_.splits[near->split];
+        for (std::uint32_t c = from.corners_end; c < to.corners_end; ++c)
+            __builtin_prefetch(&triangle_[mesh_.corner_changes[c].corner / 3]);
+        for (std::uint32_t t = from.triangles_end; t < to.triangles_end; ++t)
+            for (const std::uint32_t v : mesh_.triangles[t]) __builtin_prefetch(&vertex_[v]);
+        if (near->primary < codec_.live.vertex_count()) codec_.live.fetch(near->primary, 0);
+    }
+    if (const Sweep::Step* next = at(3); next && next->primary < codec_.live.vertex_count())
+        codec_.live.fetch(next->primary, 1);
+}
+
 template <class Coder>
-void RecordEncoder::code_splits(Coder& coder, const std::function<void(const SplitPlan&, float)>& done) {
+void RecordEncoder::code_splits(Coder& coder,
+                                const std::function<void(const SplitPlan&, float, bool)>& done) {
     for (const Sweep& sweep : sweeps_) {
         const auto marked = std::count_if(sweep.steps.begin(), sweep.steps.end(),
                                           [](const Sweep::Step& step) { return step.primary != kNoVertex; });
-        SweepHead head{static_cast<std::uint32_t>(marked),
+        SweepHead head{sweep.kind, static_cast<std::uint32_t>(marked),
                        static_cast<std::uint32_t>(sweep.steps.size()) - static_cast<std::uint32_t>(marked),
                        std::bit_cast<std::uint32_t>(sweep.error)};
         const char* fault = codec_.code_head(coder, head);
-        for (const Sweep::Step& step : sweep.steps) {
+        for (std::size_t i = 0; i < sweep.steps.size(); ++i) {
+            const Sweep::Step& step = sweep.steps[i];
+            fetch(sweep, i);
             std::uint32_t primary = step.primary;
             if (!fault && primary != kNoVertex) fault = codec_.code_mark(coder, primary);
             plan(step.split, wanted_);
@@ -259,7 +292,7 @@ void RecordEncoder::code_splits(Coder& coder, const std::function<void(const Spl
             if (!fault) fault = codec_.code_split(coder, primary, wanted_, coded_);
             codec_.apply(coded_);
             learn_numbers(wanted_, coded_);
-            done(coded_, sweep.error);
+            done(coded_, sweep.error, &step == &sweep.steps.back());
         }
         assert(!fault);
         static_cast<void>(fault);
@@ -268,7 +301,8 @@ void RecordEncoder::code_splits(Coder& coder, const std::function<void(const Spl
 
 template void RecordEncoder::code_base(RangeEncoder&);
 template void RecordEncoder::code_base(NoCoder&);
-template void RecordEncoder::code_splits(RangeEncoder&, const std::function<void(const SplitPlan&, float)>&);
-template void RecordEncoder::code_splits(NoCoder&, const std::function<void(const SplitPlan&, float)>&);
+template void RecordEncoder::code_splits(RangeEncoder&,
+                                         const std::function<void(const SplitPlan&, float, bool)>&);
+template void RecordEncoder::code_splits(NoCoder&, const std::function<void(const SplitPlan&, float, bool)>&);
 
 }  // namespace vsplit

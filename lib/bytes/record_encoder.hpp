@@ -49,9 +49,10 @@ class RecordEncoder {
     /// Codes the base mesh's extras.
     template <class Coder>
     void code_base(Coder& coder);
-    /// Codes all splits; `done` is told of each after it was made, with its sweep's error.
+    /// Codes all splits; `done` is told of each after it was made, with its sweep's error
+    /// and whether it was the sweep's last.
     template <class Coder>
-    void code_splits(Coder& coder, const std::function<void(const SplitPlan&, float)>& done);
+    void code_splits(Coder& coder, const std::function<void(const SplitPlan&, float, bool)>& done);
 
   private:
     /// A vertex born in the split being planned.
@@ -62,6 +63,8 @@ class RecordEncoder {
     };
 
     void plan(std::uint32_t split, SplitPlan& out);
+    /// Has the memory read ahead that the steps after this one need.
+    void fetch(const Sweep& sweep, std::size_t step) const;
     std::uint32_t last_move(std::uint32_t vertex, const Split& from, const Split& to) const;
     void learn_numbers(const SplitPlan& wanted, const SplitPlan& coded);
     Split before(std::uint32_t split) const;

@@ -3,6 +3,7 @@
 #include "schedule.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <span>
 
 #include "ask_list.hpp"
@@ -12,6 +13,9 @@ namespace {
 
 /// How far a sweep reaches ahead in the record: so many splits for each vertex alive.
 constexpr double kReach = 0.7;
+
+/// A record made in batches has about three to five of them each time that its vertices double.
+constexpr std::size_t kBatchesADoubling = 8;
 
 /// Which splits of a record must come before which.
 class Dependencies {
@@ -152,9 +156,115 @@ void Dependencies::replay(const Split& from, const Split& to) {
     for (std::uint32_t t = from.triangles_end; t < to.triangles_end; ++t) link(t);
 }
 
+/// Sweeps of a record that comes in batches.
+class Batches {
+  public:
+    Batches(const ProgressiveMesh& mesh, const std::vector<bool>& traded)
+        : mesh_(mesh),
+          traded_(traded),
+          number_(mesh.positions.size(), kNoVertex),
+          changed_(mesh.triangles.size(), 0),
+          moved_(mesh.positions.size(), {0, 0}) {
+        for (std::uint32_t v = 0; v < mesh.base_vertices; ++v) number_[v] = v;
+        alive_ = mesh.base_vertices;
+    }
+
+    /// Each as long as it can be; none if that makes too many of them.
+    std::vector<Sweep> sweeps() {
+        const auto count = static_cast<std::uint32_t>(mesh_.splits.size());
+        const std::size_t doublings = std::bit_width(mesh_.positions.size() / std::max(alive_, 1u));
+        std::vector<Sweep> out;
+        for (std::uint32_t first = 0, end = 0; first < count; first = end) {
+            if (out.size() >= kBatchesADoubling * (doublings + 1)) return {};
+            Sweep& sweep = out.emplace_back();
+            sweep.kind = SweepKind::kBatch;
+            sweep.error = mesh_.splits[first].error;
+            ++sweep_;
+            for (end = first; end < count && take(end, sweep); ++end) {
+            }
+            std::sort(sweep.steps.begin(), sweep.steps.end(), [](const Sweep::Step& a, const Sweep::Step& b) {
+                return a.primary != b.primary ? a.primary < b.primary : a.split < b.split;
+            });
+            for (const Sweep::Step& step : sweep.steps) bear(step.split);
+        }
+        return out;
+    }
+
+  private:
+    Split begin_of(std::uint32_t s) const {
+        return s == 0 ? Split{mesh_.base_vertices, mesh_.base_triangles, 0, 0, 0} : mesh_.splits[s - 1];
+    }
+    /// Adds a split to the sweep, unless it depends on one that is in it.
+    bool take(std::uint32_t s, Sweep& sweep) {
+        const Split from = begin_of(s), to = mesh_.splits[s];
+        std::uint32_t primary = kNoVertex;
+        bool trades = false;
+        for (std::uint32_t v = from.vertices_end; v < to.vertices_end; ++v) {
+            trades |= traded_[v];
+            const std::uint32_t parent = mesh_.parents[v];
+            if (parent == kNoVertex) continue;
+            if (number_[parent] == kNoVertex) return false;  // born in this sweep
+            primary = std::min(primary, number_[parent]);
+        }
+        if (!sweep.steps.empty() && (trades || closed_)) return false;
+        for (std::uint32_t c = from.corners_end; c < to.corners_end; ++c)
+            if (changed_[mesh_.corner_changes[c].corner / 3] == sweep_) return false;
+        for (std::uint32_t m = from.moves_end; m < to.moves_end; ++m) {
+            const std::uint32_t v = mesh_.moves[m].vertex;
+            if (v < from.vertices_end &&
+                (number_[v] == kNoVertex || (moved_[v].sweep == sweep_ && moved_[v].primary != primary)))
+                return false;
+        }
+        for (std::uint32_t t = from.triangles_end; t < to.triangles_end; ++t)
+            for (const std::uint32_t v : mesh_.triangles[t])
+                if (v < from.vertices_end && number_[v] == kNoVertex) return false;
+        for (std::uint32_t m = from.moves_end; m < to.moves_end; ++m)
+            moved_[mesh_.moves[m].vertex] = {sweep_, primary};
+        bool takes = primary == kNoVertex;
+        for (std::uint32_t c = from.corners_end; c < to.corners_end; ++c) {
+            changed_[mesh_.corner_changes[c].corner / 3] = sweep_;
+            takes |= number_[mesh_.parents[mesh_.corner_changes[c].vertex]] == primary;
+        }
+        // Where names are traded, other triangles change than the record says: no split but this.
+        closed_ = trades;
+        // A parent that keeps its triangles may have none left to take.
+        if (!takes || trades) sweep.kind = SweepKind::kBatchAll;
+        for (std::uint32_t t = from.triangles_end; t < to.triangles_end; ++t) changed_[t] = sweep_;
+        sweep.steps.push_back({s, primary});
+        return true;
+    }
+    /// Numbers what a split bears.
+    void bear(std::uint32_t s) {
+        const Split from = begin_of(s), to = mesh_.splits[s];
+        births_.clear();
+        for (std::uint32_t v = from.vertices_end; v < to.vertices_end; ++v)
+            births_.emplace_back(mesh_.parents[v] == kNoVertex ? kNoVertex : number_[mesh_.parents[v]], v);
+        std::stable_sort(births_.begin(), births_.end(),
+                         [](const auto& a, const auto& b) { return a.first < b.first; });
+        for (const auto& [parent, v] : births_) {
+            if (traded_[v]) number_[mesh_.parents[v]] = alive_;
+            number_[v] = traded_[v] ? parent : alive_;
+            ++alive_;
+        }
+    }
+
+    const ProgressiveMesh& mesh_;
+    const std::vector<bool>& traded_;
+    std::vector<std::uint32_t> number_;   // as written
+    std::vector<std::uint32_t> changed_;  // per triangle, the sweep
+    struct Moved {
+        std::uint32_t sweep, primary;
+    };
+    std::vector<Moved> moved_;
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> births_;  // parent's number, vertex
+    std::uint32_t sweep_ = 0, alive_ = 0;
+    bool closed_ = false;  // takes no more splits
+};
+
 }  // namespace
 
 std::vector<Sweep> schedule(const ProgressiveMesh& mesh, const std::vector<bool>& traded) {
+    if (auto batches = Batches(mesh, traded).sweeps(); !batches.empty()) return batches;
     const auto count = static_cast<std::uint32_t>(mesh.splits.size());
     Dependencies depends(mesh);
     std::vector<std::uint32_t> number(mesh.positions.size(), kNoVertex);  // as written

@@ -13,6 +13,14 @@
 
 namespace vsplit {
 
+/// How a sweep asks vertices whether they split.
+enum class SweepKind : std::uint8_t {
+    kRounds,    ///< Each in turn, and again those whose stars changed: splits may depend on each other.
+    kBatch,     ///< Each in turn, until it says no: no triangle changes twice, and those that did are no part
+                ///< of a cut. Only those with triangles left are asked.
+    kBatchAll,  ///< The same, but all are asked.
+};
+
 struct Sweep {
     struct Step {
         std::uint32_t split;    ///< In the record.
@@ -20,13 +28,16 @@ struct Sweep {
     };
     std::vector<Step>
         steps;  ///< Those with parents, in the order in which an AskList comes to these; then those without.
+    SweepKind kind = SweepKind::kRounds;
     float error = 0;  ///< Of the mesh before the sweep: of the first split not made yet.
 };
 
 /// Every split once. Two splits keep their order if one acts on a vertex (splits or moves it) in the star of
 /// a vertex that the other acts on; all others may change places, which leaves the mesh around each as it
-/// was. `traded` tells of each vertex of the record whether it keeps its parent's number when it is born, and
-/// the parent gets the new one. `mesh` must be sound.
+/// was. A record in which
+/// long rows of splits change different triangles is written in batches, else in rounds. `traded` tells of
+/// each vertex of the record whether it keeps its parent's number when it is born, and the parent gets the
+/// new one. `mesh` must be sound.
 std::vector<Sweep> schedule(const ProgressiveMesh& mesh, const std::vector<bool>& traded);
 
 }  // namespace vsplit

@@ -8,16 +8,6 @@
 #include "place_fit.hpp"
 
 namespace vsplit {
-namespace {
-
-bool same_rotated(const Triangle& a, const Triangle& b) {
-    for (std::size_t k = 0; k < 3; ++k)
-        if (a[0] == b[k] && a[1] == b[(k + 1) % 3] && a[2] == b[(k + 2) % 3]) return true;
-    return false;
-}
-
-}  // namespace
-
 void SplitPlan::clear() {
     births.clear();
     taken.clear();
@@ -42,6 +32,9 @@ SplitCodec::SplitCodec(const StreamShape& shape, const PlaceWeights& weights)
 
 template <class Coder>
 const char* SplitCodec::code_head(Coder& coder, SweepHead& head) {
+    const std::uint32_t kind = kinds_.code(coder, static_cast<std::uint32_t>(head.kind));
+    if (kind > static_cast<std::uint32_t>(SweepKind::kBatchAll)) return "a sweep is of no known kind";
+    head.kind = kind_ = static_cast<SweepKind>(kind);
     head.marked = marked_.code(coder, head.marked);
     head.unmarked = unmarked_.code(coder, head.unmarked);
     const std::uint32_t fall = error_.code(coder, error_bits_ - head.error_bits);
@@ -51,7 +44,8 @@ const char* SplitCodec::code_head(Coder& coder, SweepHead& head) {
     if (head.marked == 0 && head.unmarked == 0) return "a sweep is empty";
     ++sweep_;
     cursor_ = 0;
-    asks_.begin(alive);
+    older_ = alive;
+    if (!is_batch()) asks_.begin(alive);
     sparse_ = std::uint64_t{head.marked} * 64 < alive;
     return nullptr;
 }
@@ -74,6 +68,22 @@ bool SplitCodec::ask(Coder& coder, std::uint32_t v, bool splits) {
 }
 
 template <class Coder>
+bool SplitCodec::ask_batch(Coder& coder, std::uint32_t v, bool splits) {
+    const LiveVertex& vertex = live.vertices[v];
+    const Lattice3 bump = live.bump(v);
+    std::uint64_t squared = 1;
+    for (const std::int32_t b : bump) squared += static_cast<std::uint64_t>(std::int64_t{b} * b);
+    const std::int32_t size = log2_fixed(squared);
+    const std::size_t valence = std::clamp<std::uint32_t>(vertex.star, 3, 12) - 3;
+    const std::size_t locked = std::min(vertex.star - unlocked(vertex), 6u);
+    const std::size_t acted = std::min(sweep_ - vertex.acted, 2u);
+    const auto bumpy = static_cast<std::size_t>(std::clamp((size - split_size_ + 6 * 256) >> 8, 0, 9));
+    const bool answer = coder.bit(batch_mark_[((valence * 7 + locked) * 3 + acted) * 10 + bumpy], splits);
+    if (answer) split_size_ += (size - split_size_) >> 5;
+    return answer;
+}
+
+template <class Coder>
 const char* SplitCodec::code_mark(Coder& coder, std::uint32_t& primary) {
     if (!Coder::kWrites && !Coder::kDecodes) return nullptr;
     if (sparse_) {
@@ -85,15 +95,24 @@ const char* SplitCodec::code_mark(Coder& coder, std::uint32_t& primary) {
         cursor_ = primary;
         return nullptr;
     }
+    if (is_batch()) {
+        for (; cursor_ < older_; ++cursor_) {
+            if (kind_ == SweepKind::kBatch && unlocked(live.vertices[cursor_]) == 0) continue;
+            if (cursor_ + 8 < older_) live.fetch(cursor_ + 8, 0);
+            if (cursor_ + 4 < older_) live.fetch(cursor_ + 4, 1);
+            if (!ask_batch(coder, cursor_, cursor_ == primary)) continue;
+            primary = cursor_;
+            return nullptr;
+        }
+        return "a sweep marks fewer vertices than it announces";
+    }
     for (std::uint32_t v; (v = asks_.next()) != kNoVertex;) {
-        // What the next in line need comes from memory meanwhile: the list of the seventh, the triangles of
-        // the fourth, the ring of the second.
+        // What the next in line need comes from memory meanwhile: the list of the seventh, the ring of the
+        // fourth.
         std::uint64_t line = asks_.after(v);
         for (int i = 1; line != 0 && i <= 7; ++i, line &= line - 1)
-            if (i == 2 || i == 4 || i == 7)
-                live.fetch(v + 1 + static_cast<std::uint32_t>(std::countr_zero(line)), i == 2   ? 2
-                                                                                       : i == 4 ? 1
-                                                                                                : 0);
+            if (i == 4 || i == 7)
+                live.fetch(v + 1 + static_cast<std::uint32_t>(std::countr_zero(line)), i == 4 ? 1 : 0);
         if (ask(coder, v, v == primary)) {
             primary = v;
             return nullptr;
@@ -110,7 +129,19 @@ const char* SplitCodec::code_split(Coder& coder, std::uint32_t primary, const Sp
     out.clear();
     implied_triangles_.clear();
     implied_groups_.clear();
+    is_plain_ = false;
+    if (++fits_ >= fit_every) fits_ = 0;
     const bool marked = primary != kNoVertex;
+    if (marked) {
+        live.gather(primary, star_);
+        if (star_.fan) {
+            Cut cut;
+            is_plain_ = coder.bit(plain_[star_.closed],
+                                  !Coder::kDecodes && find_plain(primary, wanted, cut, out.sources));
+            live.fetch(star_);
+            if (is_plain_) return code_plain(coder, primary, cut, wanted, out);
+        }
+    }
     auto births = static_cast<std::uint32_t>(wanted.births.size());
     births = coder.bit(one_birth_[marked], births == 1) ? 1 : births_.code(coder, births);
     if (marked && births == 0) return "a marked split bears no vertex";
@@ -139,6 +170,8 @@ const char* SplitCodec::code_birth(Coder& coder, std::uint32_t primary, std::siz
     out.births.emplace_back();
     if (const char* fault = code_parent(coder, primary, wanted, index, out)) return fault;
     const std::uint32_t parent = out.births[index].parent;
+    if (Coder::kDecodes && is_batch() && parent != kNoVertex && parent >= older_)
+        return "a batch splits a vertex that it bore";
     is_run_ = false;
     bool moves = false;
     std::size_t move = 0;
@@ -206,79 +239,6 @@ const char* SplitCodec::code_parent(Coder& coder, std::uint32_t primary, const S
     return nullptr;
 }
 
-bool SplitCodec::find_cut(std::span<const std::uint32_t> taken, const SplitPlan& wanted, std::uint32_t child,
-                          Cut& cut) const {
-    const std::uint32_t n = star_.size, k = static_cast<std::uint32_t>(taken.size());
-    std::uint32_t in = 0;
-    for (std::uint32_t i = 0; i < n; ++i)
-        for (const std::uint32_t corner : taken)
-            if (corner == star_.corner[i]) in |= 1u << i;
-    const auto has = [&](std::uint32_t i) { return (in >> i & 1) != 0; };
-    const auto born = [&](const Triangle& triangle) {
-        return std::any_of(wanted.triangles.begin(), wanted.triangles.end(),
-                           [&](const Triangle& t) { return same_rotated(t, triangle); });
-    };
-    cut.length = k;
-    cut.begin = 0;
-    if (star_.closed) {
-        if (k == 0 || k == n) return false;
-        while (!(has(cut.begin) && !has((cut.begin + n - 1) % n))) ++cut.begin;
-        for (std::uint32_t i = 0; i < k; ++i)
-            if (!has((cut.begin + i) % n)) return false;
-        cut.first_wing = cut.last_wing = true;
-        return true;
-    }
-    const std::uint32_t p = star_.centre;
-    if (k == 0) {
-        cut.last_wing = born({child, star_.ring[0], p});
-        cut.first_wing = !cut.last_wing && born({child, p, star_.ring[n]});
-        if (cut.first_wing) cut.begin = n;
-        return cut.last_wing || cut.first_wing;
-    }
-    while (!has(cut.begin)) ++cut.begin;
-    for (std::uint32_t i = 0; i < k; ++i)
-        if (!has(cut.begin + i)) return false;
-    const bool first = born({child, p, star_.ring[cut.begin]}),
-               last = born({child, star_.ring[cut.begin + k], p});
-    cut.first_wing = cut.last_wing = true;
-    if (last && !first && cut.begin == 0) cut.first_wing = false;
-    if (first && !last && cut.begin + k == n) cut.last_wing = false;
-    return true;
-}
-
-void SplitCodec::take_run(std::uint32_t child, SplitPlan& out) {
-    const std::uint32_t n = star_.size, p = star_.centre, begin = run_.begin, end = begin + run_.length;
-    const std::size_t before = out.taken.size();
-    for (std::uint32_t i = begin; i < end; ++i) out.taken.push_back(star_.corner[i >= n ? i - n : i]);
-    std::sort(out.taken.begin() + static_cast<std::ptrdiff_t>(before), out.taken.end());
-    const auto group_of = [&](std::uint32_t i) {
-        return groups.empty() ? 0 : groups[star_.corner[star_.closed && i >= n ? i - n : i] / 3];
-    };
-    if (run_.last_wing) {
-        implied_triangles_.push_back({child, star_.ring_at(end >= n && star_.closed ? end - n : end), p});
-        implied_groups_.push_back(group_of(end > 0 ? end - 1 : 0));
-    }
-    if (run_.first_wing) {
-        implied_triangles_.push_back({child, p, star_.ring[begin]});
-        implied_groups_.push_back(group_of(begin < n ? begin : n - 1));
-    }
-    // The rings around the child and around what the parent keeps, without each other.
-    child_ring_.size = parent_ring_.size = 0;
-    for (std::uint32_t i = begin; i <= end; ++i)
-        child_ring_.vertex[child_ring_.size++] = star_.ring[star_.closed && i >= n ? i - n : i];
-    child_ring_.open = !(run_.first_wing && run_.last_wing);
-    parent_ring_.open = !star_.closed;
-    if (star_.closed) {
-        for (std::uint32_t i = end; i <= begin + n; ++i)
-            parent_ring_.vertex[parent_ring_.size++] = star_.ring[i % n];
-    } else {
-        for (std::uint32_t i = run_.last_wing ? end : n + 1; i <= n; ++i)
-            parent_ring_.vertex[parent_ring_.size++] = star_.ring[i];
-        for (std::uint32_t i = 0; i < (run_.first_wing ? begin + 1 : 0); ++i)
-            parent_ring_.vertex[parent_ring_.size++] = star_.ring[i];
-    }
-}
-
 template <class Coder>
 const char* SplitCodec::code_taken(Coder& coder, const SplitPlan& wanted, std::size_t index, SplitPlan& out) {
     live.gather(out.births[index].parent, star_);
@@ -292,7 +252,12 @@ const char* SplitCodec::code_taken(Coder& coder, const SplitPlan& wanted, std::s
         is_run_ = coder.bit(regular_[star_.closed],
                             !Coder::kDecodes && find_cut(taken, wanted, birth_id(index), cut));
         if (is_run_) {
-            run_ = Coder::kWrites || Coder::kDecodes ? cut_.code(coder, live, star_, cut) : cut;
+            if (Coder::kWrites || Coder::kDecodes) {
+                if (!cut_.code(coder, live, star_, is_batch() ? older_ : kNoVertex, cut, run_))
+                    return "a run has no place in its fan";
+            } else {
+                run_ = cut;
+            }
             take_run(birth_id(index), out);
             return Coder::kDecodes && out.taken.size() > room.corners
                        ? "a block changes more corners than it announces"
@@ -307,6 +272,8 @@ const char* SplitCodec::code_taken(Coder& coder, const SplitPlan& wanted, std::s
         if (star_.size > 64 ? coder.raw(1, is_taken) != 0 : coder.bit(in_mask_, is_taken)) {
             if (Coder::kDecodes && out.taken.size() >= room.corners)
                 return "a block changes more corners than it announces";
+            if (Coder::kDecodes && is_batch() && is_locked(live.triangles[corner / 3]))
+                return "a batch changes a triangle twice";
             out.taken.push_back(corner);
         }
     }
@@ -317,9 +284,11 @@ const char* SplitCodec::code_taken(Coder& coder, const SplitPlan& wanted, std::s
     template const char* SplitCodec::code_head(Coder&, SweepHead&);     \
     template const char* SplitCodec::code_mark(Coder&, std::uint32_t&); \
     template const char* SplitCodec::code_split(Coder&, std::uint32_t, const SplitPlan&, SplitPlan&);
-VSPLIT_INSTANTIATE(RangeEncoder)
 VSPLIT_INSTANTIATE(RangeDecoder)
+#ifndef VSPLIT_READS_ONLY
+VSPLIT_INSTANTIATE(RangeEncoder)
 VSPLIT_INSTANTIATE(NoCoder)
+#endif
 #undef VSPLIT_INSTANTIATE
 
 }  // namespace vsplit

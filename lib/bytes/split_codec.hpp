@@ -16,6 +16,7 @@
 #include "live_stars.hpp"
 #include "number_models.hpp"
 #include "place_model.hpp"
+#include "schedule.hpp"
 
 namespace vsplit {
 
@@ -48,6 +49,13 @@ struct SplitPlan {
     void clear();
 };
 
+/// Is it the same triangle, named from another corner on?
+inline bool is_rotation(const Triangle& a, const Triangle& b) {
+    for (std::size_t k = 0; k < 3; ++k)
+        if (a[0] == b[k] && a[1] == b[(k + 1) % 3] && a[2] == b[(k + 2) % 3]) return true;
+    return false;
+}
+
 /// What of a mesh the stream holds.
 struct StreamShape {
     bool lossless = false;
@@ -59,6 +67,7 @@ struct StreamShape {
 /// The beginning of a sweep: every vertex in turn, those just born too, is asked whether it splits, and again
 /// after it did.
 struct SweepHead {
+    SweepKind kind = SweepKind::kRounds;
     std::uint32_t marked = 0;    ///< Splits found by their first parent, in its order.
     std::uint32_t unmarked = 0;  ///< Splits without parents, after them.
     std::uint32_t error_bits = 0;
@@ -81,7 +90,8 @@ class SplitCodec {
     std::vector<std::uint32_t> groups;
     std::vector<std::array<std::uint32_t, 3>> finer;  ///< One a vertex, if lossless.
     StreamRoom room;                                  ///< Decoder: what is left of the block.
-    PlaceFit* fit = nullptr;                          ///< Encoder: told of every place that was predicted.
+    PlaceFit* fit = nullptr;                          ///< Encoder: told of places that were predicted, of
+    std::uint32_t fit_every = 1;  ///< every so manieth split; a NoCoder leaves the others where they are.
 
     /// What Draco's bytes do not hold of the base mesh. With triangles, `live` has its vertices and they;
     /// without, its vertices with their places to come. `values`, `finer` and `groups` are filled in order.
@@ -142,12 +152,45 @@ class SplitCodec {
 
     template <class Coder>
     bool ask(Coder& coder, std::uint32_t v, bool splits);
+    /// Is the place at hand one to predict? A NoCoder skips most.
+    template <class Coder>
+    bool looks_at() const {
+        return Coder::kWrites || Coder::kDecodes || fits_ == 0;
+    }
+    /// Of a batch.
+    template <class Coder>
+    bool ask_batch(Coder& coder, std::uint32_t v, bool splits);
+    bool is_batch() const { return kind_ != SweepKind::kRounds; }
+    /// Triangles of the star that a batch has not changed.
+    std::uint32_t unlocked(const LiveVertex& v) const {
+        return v.star - (v.touched == sweep_ ? v.locked : 0);
+    }
+    /// A triangle that the batch has changed has a corner that it bore.
+    bool is_locked(const Triangle& t) const { return t[0] >= older_ || t[1] >= older_ || t[2] >= older_; }
+    /// A vertex whose star changes: it is to be asked again, or has no triangle locked yet.
+    LiveVertex& touch(std::uint32_t v) {
+        LiveVertex& vertex = live.vertices[v];
+        if (vertex.touched != sweep_) vertex.locked = 0;
+        vertex.touched = sweep_;
+        if (!is_batch()) asks_.add(v);
+        return vertex;
+    }
     /// The run that a set of corners is, if it is one that CutModel codes.
     bool find_cut(std::span<const std::uint32_t> taken, const SplitPlan& wanted, std::uint32_t child,
                   Cut& cut) const;
     void take_run(std::uint32_t child, SplitPlan& out);
-    /// The split at hand, if it is a run of its parent's fan and nothing else.
-    void apply_run(const SplitPlan& plan);
+    /// Encoder: is this split a run of its parent's fan and nothing else? Then also which of its triangles
+    /// the run implies, in order.
+    bool find_plain(std::uint32_t primary, const SplitPlan& wanted, Cut& cut,
+                    std::vector<std::uint32_t>& sources) const;
+    template <class Coder>
+    const char* code_plain(Coder& coder, std::uint32_t primary, const Cut& cut, const SplitPlan& wanted,
+                           SplitPlan& out);
+    void apply_plain(const SplitPlan& plan);
+    template <class Coder>
+    void code_implied(Coder& coder, const SplitPlan& wanted, SplitPlan& out);
+    /// Of a batch: what a split has changed.
+    void count_locked(std::uint32_t first);
     void predict_values(std::uint32_t parent, const SplitPlan& out);
     std::uint32_t birth_id(std::size_t index) const {
         return live.vertex_count() + static_cast<std::uint32_t>(index);
@@ -159,15 +202,19 @@ class SplitCodec {
 
     // Sweeps.
     AskList asks_;
+    SweepKind kind_ = SweepKind::kRounds;
+    SymbolModel<2> kinds_;
     std::uint32_t sweep_ = 0, cursor_ = 0;
+    std::uint32_t older_ = 0;  ///< Vertices at the sweep's beginning.
     bool sparse_ = false;
     std::uint32_t error_bits_;
     std::int32_t split_size_ = 0;
     std::array<BitModel, 8 * 18 * 10> mark_;
+    std::array<BitModel, 10 * 7 * 3 * 10> batch_mark_;
     NumberModel marked_, unmarked_, error_, gap_;
 
     // Splits.
-    std::array<BitModel, 2> one_birth_, regular_, implied_, place_moves_, same_move_, same_place_,
+    std::array<BitModel, 2> plain_, one_birth_, regular_, implied_, place_moves_, same_move_, same_place_,
         group_stays_;
     std::array<BitModel, 3> moved_;
     std::array<BitModel, 2> twin_moved_, rough_;
@@ -181,7 +228,8 @@ class SplitCodec {
     // The birth at hand.
     Star star_;
     Cut run_;
-    bool is_run_ = false, all_implied_ = false;
+    bool is_run_ = false, is_plain_ = false;
+    std::uint32_t fits_ = 0;  ///< Splits so far, modulo fit_every.
     Ring child_ring_, parent_ring_;
     PlaceGuides guides_;
     std::vector<Triangle> implied_triangles_;

@@ -3,7 +3,6 @@
 //
 // The second half of SplitCodec: places, moves, new triangles, attributes, and what a split does.
 #include <algorithm>
-#include <cmath>
 
 #include "place_fit.hpp"
 #include "split_codec.hpp"
@@ -18,12 +17,6 @@ std::uint32_t unzigzag(std::uint32_t code) {
     return (code >> 1) ^ (0u - (code & 1));
 }
 
-bool same_rotated(const Triangle& a, const Triangle& b) {
-    for (std::size_t k = 0; k < 3; ++k)
-        if (a[0] == b[k] && a[1] == b[(k + 1) % 3] && a[2] == b[(k + 2) % 3]) return true;
-    return false;
-}
-
 }  // namespace
 
 // ---- Places
@@ -33,31 +26,6 @@ void SplitCodec::code_finer(Coder& coder, const std::array<std::uint32_t, 3>& wa
                             std::array<std::uint32_t, 3>& out) {
     if (shape_.lossless)
         for (std::size_t i = 0; i < 3; ++i) out[i] = finer_[i].code(coder, wanted[i]);
-}
-
-bool SplitCodec::may_be_rough(PlaceGuides& guides, const Lattice3& place, double tolerance, const Ring& ring,
-                              const Lattice3& partner) {
-    NoCoder look;
-    const Lattice3 near = place_.code(look, guides, place, true);  // changes no model
-    const auto offset = [&](const Lattice3& p) {
-        return std::array<double, 3>{double(p[0]) - place[0], double(p[1]) - place[1],
-                                     double(p[2]) - place[2]};
-    };
-    const auto moved = offset(near);
-    auto before = offset(partner);
-    for (std::uint32_t i = 0; i <= ring.size; ++i) {
-        const auto now = offset(i == ring.size ? partner : live.vertices[ring.vertex[i]].at);
-        const std::array<double, 3> normal = {before[1] * now[2] - before[2] * now[1],
-                                              before[2] * now[0] - before[0] * now[2],
-                                              before[0] * now[1] - before[1] * now[0]};
-        const double length =
-            std::sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
-        const double height = moved[0] * normal[0] + moved[1] * normal[1] + moved[2] * normal[2];
-        if (std::abs(height) > tolerance * length) return false;
-        before = now;
-    }
-    // An edge of the mesh's boundary has no plane that would keep it.
-    return !ring.open;
 }
 
 template <class Coder>
@@ -72,7 +40,9 @@ void SplitCodec::code_birth_place(Coder& coder, const SplitPlan& wanted, std::si
         birth.at = first.at;
         birth.finer = first.finer;
     } else {
-        if (is_run_) {
+        if (is_run_ && !looks_at<Coder>()) {
+            birth.at = asked.at;
+        } else if (is_run_) {
             guides_ = place_.guide_birth(live, birth.parent, child_ring_, moving);
             bool rough = false;
             if (!Coder::kDecodes && moving && asked.tolerance > 0) {
@@ -114,7 +84,9 @@ void SplitCodec::code_move(Coder& coder, const SplitPlan& wanted, std::size_t wh
         move.at = out.moves[0].at;
         move.finer = out.moves[0].finer;
     } else if (coder.bit(place_moves_[guided], asked.at != now || asked.finer != finer_now)) {
-        if (guided) {
+        if (guided && !looks_at<Coder>()) {
+            move.at = asked.at;
+        } else if (guided) {
             PlaceGuides guides = place_.guide_move(live, vertex, parent_ring_, out.births.back().at);
             bool rough = !Coder::kDecodes && asked.tolerance > 0 &&
                          may_be_rough(guides, asked.at, asked.tolerance, parent_ring_, out.births.back().at);
@@ -197,6 +169,14 @@ void SplitCodec::code_group(Coder& coder, std::uint32_t predicted, std::uint32_t
 }
 
 template <class Coder>
+void SplitCodec::code_implied(Coder& coder, const SplitPlan& wanted, SplitPlan& out) {
+    out.triangles.assign(implied_triangles_.begin(), implied_triangles_.end());
+    if (shape_.group_bits == 0) return;
+    for (std::size_t i = 0; i < implied_groups_.size(); ++i)
+        code_group(coder, implied_groups_[i], Coder::kDecodes ? 0 : wanted.groups[out.sources[i]], out);
+}
+
+template <class Coder>
 const char* SplitCodec::code_triangle(Coder& coder, const SplitPlan& out, const Triangle& wanted,
                                       Triangle& triangle) {
     enum : std::uint32_t { kBorn, kParent, kNear, kFar };
@@ -248,11 +228,10 @@ const char* SplitCodec::code_triangles(Coder& coder, const SplitPlan& wanted, Sp
     // Encoder: which of the triangles asked for are the implied ones?
     used_.assign(wanted.triangles.size(), false);
     bool all = true;
-    all_implied_ = false;
     if (!Coder::kDecodes)
         for (const Triangle& implied : implied_triangles_) {
             std::uint32_t i = 0;
-            while (i < wanted.triangles.size() && (used_[i] || !same_rotated(wanted.triangles[i], implied)))
+            while (i < wanted.triangles.size() && (used_[i] || !is_rotation(wanted.triangles[i], implied)))
                 ++i;
             if (i == wanted.triangles.size()) {
                 all = false;
@@ -267,13 +246,7 @@ const char* SplitCodec::code_triangles(Coder& coder, const SplitPlan& wanted, Sp
             out.sources.clear();
             used_.assign(wanted.triangles.size(), false);
         }
-        all_implied_ = all;
-        if (all) {
-            out.triangles = implied_triangles_;
-            for (std::size_t i = 0; i < implied_triangles_.size(); ++i)
-                code_group(coder, implied_groups_[i],
-                           Coder::kDecodes || wanted.groups.empty() ? 0 : wanted.groups[out.sources[i]], out);
-        }
+        if (all) code_implied(coder, wanted, out);
     }
     const std::uint32_t more = extra_.code(
         coder,
@@ -378,36 +351,20 @@ void SplitCodec::code_base(Coder& coder) {
 
 // ---- What a split does
 
-void SplitCodec::apply_run(const SplitPlan& plan) {
-    const std::size_t stride = shape_.stride();
-    const SplitPlan::Birth& birth = plan.births[0];
-    const std::uint32_t p = birth.parent, child = live.vertex_count();
-    Lattice3 parent_at = live.vertices[p].at;
-    if (!plan.moves.empty()) {
-        parent_at = plan.moves[0].at;
-        if (shape_.lossless) finer[p] = plan.moves[0].finer;
-        std::copy_n(plan.move_values.begin(), stride,
-                    values.begin() + static_cast<std::ptrdiff_t>(p * stride));
+void SplitCodec::count_locked(std::uint32_t first) {
+    touched_.clear();
+    for (std::uint32_t v = first; v < live.vertex_count(); ++v) {
+        live.gather_corners(v, scratch_);
+        for (const std::uint32_t corner : scratch_) touched_.push_back(corner / 3);
     }
-    live.split(star_, run_, parent_at, birth.at);
-    values.insert(values.end(), plan.birth_values.begin(), plan.birth_values.end());
-    if (shape_.lossless) finer.push_back(birth.finer);
-    if (shape_.group_bits > 0) groups.insert(groups.end(), plan.groups.begin(), plan.groups.end());
-    for (std::uint32_t i = 0; i < star_.ring_size(); ++i) {
-        live.vertices[star_.ring[i]].touched = sweep_;
-        asks_.add(star_.ring[i]);
-    }
-    LiveVertex &parent = live.vertices[p], &born = live.vertices[child];
-    born.acted = born.touched = parent.acted = parent.touched = sweep_;
-    asks_.add(p);
-    asks_.add(child);
+    std::sort(touched_.begin(), touched_.end());
+    touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
+    for (const std::uint32_t t : touched_)
+        for (const std::uint32_t v : live.triangles[t]) ++live.vertices[v].locked;
 }
 
 void SplitCodec::apply(const SplitPlan& plan) {
-    if (is_run_ && plan.births.size() == 1 && plan.triangles.size() == implied_triangles_.size() &&
-        all_implied_ &&
-        (plan.moves.empty() || (plan.moves.size() == 1 && plan.moves[0].vertex == plan.births[0].parent)))
-        return apply_run(plan);
+    if (is_plain_) return apply_plain(plan);
     const std::size_t stride = shape_.stride();
     const std::uint32_t first = live.vertex_count();
     // Triangles whose places change: all around a vertex that moves, else those that are taken.
@@ -432,8 +389,7 @@ void SplitCodec::apply(const SplitPlan& plan) {
         if (shape_.lossless) finer[move.vertex] = move.finer;
         std::copy_n(plan.move_values.begin() + static_cast<std::ptrdiff_t>(i * stride), stride,
                     values.begin() + static_cast<std::ptrdiff_t>(move.vertex * stride));
-        live.vertices[move.vertex].acted = sweep_;
-        asks_.add(move.vertex);
+        touch(move.vertex).acted = sweep_;
     }
     values.insert(values.end(), plan.birth_values.begin(), plan.birth_values.end());
     for (const SplitPlan::Birth& birth : plan.births) {
@@ -441,21 +397,16 @@ void SplitCodec::apply(const SplitPlan& plan) {
         if (shape_.lossless) finer.push_back(birth.finer);
     }
     const auto touch_ring = [&](std::uint32_t v) {
-        live.vertices[v].acted = live.vertices[v].touched = sweep_;
-        asks_.add(v);
+        touch(v).acted = sweep_;
         for (const std::uint32_t corner : scratch_)
-            for (const std::uint32_t w : live.triangles[corner / 3]) {
-                live.vertices[w].touched = sweep_;
-                asks_.add(w);
-            }
+            for (const std::uint32_t w : live.triangles[corner / 3]) touch(w);
     };
     std::uint32_t begin = 0;
     for (std::uint32_t i = 0; i < plan.births.size(); ++i) {
         const SplitPlan::Birth& birth = plan.births[i];
         const auto taken = std::span(plan.taken).subspan(begin, birth.taken_end - begin);
         begin = birth.taken_end;
-        live.vertices[first + i].acted = live.vertices[first + i].touched = sweep_;
-        asks_.add(first + i);
+        touch(first + i).acted = sweep_;
         if (birth.parent == kNoVertex) continue;
         live.gather_corners(birth.parent, scratch_);
         touch_ring(birth.parent);
@@ -477,11 +428,9 @@ void SplitCodec::apply(const SplitPlan& plan) {
     for (std::size_t i = 0; i < plan.triangles.size(); ++i) {
         live.add_triangle(plan.triangles[i]);
         if (shape_.group_bits > 0) groups.push_back(plan.groups[i]);
-        for (const std::uint32_t v : plan.triangles[i]) {
-            live.vertices[v].touched = sweep_;
-            asks_.add(v);
-        }
+        for (const std::uint32_t v : plan.triangles[i]) touch(v);
     }
+    if (is_batch()) count_locked(first);
     live.link_twins(first);
 }
 
@@ -490,11 +439,14 @@ void SplitCodec::apply(const SplitPlan& plan) {
     template void SplitCodec::code_birth_place(Coder&, const SplitPlan&, std::size_t, bool, SplitPlan&); \
     template void SplitCodec::code_move(Coder&, const SplitPlan&, std::size_t, std::uint32_t, bool,      \
                                         SplitPlan&);                                                     \
+    template void SplitCodec::code_implied(Coder&, const SplitPlan&, SplitPlan&);                        \
     template const char* SplitCodec::code_extra_moves(Coder&, const SplitPlan&, SplitPlan&);             \
     template const char* SplitCodec::code_triangles(Coder&, const SplitPlan&, SplitPlan&);
-VSPLIT_INSTANTIATE(RangeEncoder)
 VSPLIT_INSTANTIATE(RangeDecoder)
+#ifndef VSPLIT_READS_ONLY
+VSPLIT_INSTANTIATE(RangeEncoder)
 VSPLIT_INSTANTIATE(NoCoder)
+#endif
 #undef VSPLIT_INSTANTIATE
 
 }  // namespace vsplit

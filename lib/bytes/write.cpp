@@ -15,6 +15,14 @@ namespace vsplit {
 namespace {
 
 constexpr std::uint32_t kLosslessLatticeBits = 18;
+/// About so many splits tell the weights of prediction.
+constexpr std::size_t kFitted = 1 << 16;
+
+/// Blocks of fewer bytes would pay more for their place in the table.
+constexpr std::size_t kLeastBlock = 1024;
+
+/// Where a sweep ends the error falls: a block of this share of what it may hold ends there too.
+constexpr double kEnoughBlock = 0.7;
 
 Error cannot(std::string message) {
     return {ErrorCode::kArgument, std::move(message), Error::kNowhere, 0};
@@ -81,7 +89,8 @@ Result<Encoded> encode(const ProgressiveMesh& mesh, const WriteOptions& options)
         NoCoder look;
         RecordEncoder first(mesh, numbers, sweeps);
         first.codec().fit = &fit;
-        first.code_splits(look, [](const SplitPlan&, float) {});
+        first.codec().fit_every = static_cast<std::uint32_t>(mesh.splits.size() / kFitted + 1);
+        first.code_splits(look, [](const SplitPlan&, float, bool) {});
     }
     numbers.details.weights = fit.solve();
 
@@ -100,8 +109,13 @@ Result<Encoded> encode(const ProgressiveMesh& mesh, const WriteOptions& options)
     out.base.insert(out.base.end(), extras.begin(), extras.end());
     output.add_base(encoder.codec());
 
-    // Blocks start small, so that the first bytes already refine, and grow to the size asked for.
-    std::size_t target = std::min<std::size_t>(options.block_bytes, 4096);
+    // Blocks start small, so that the first bytes already refine, and grow with what precedes them.
+    std::size_t before_blocks = kHeaderBytes + 64 + out.base.size();
+    std::size_t target = 0;
+    const auto next_target = [&] {
+        target = std::min<std::size_t>(options.block_bytes, std::max(kLeastBlock, before_blocks / 3));
+    };
+    next_target();
     std::uint32_t made = 0, ended = 0;
     const auto end_block = [&] {
         Block block;
@@ -116,14 +130,16 @@ Result<Encoded> encode(const ProgressiveMesh& mesh, const WriteOptions& options)
         if (block.stored.size() * kPartsPerByte < parts)
             block.stored.resize((parts + kPartsPerByte - 1) / kPartsPerByte);
         block.checksum = checksum64(block.stored);
+        before_blocks += block.stored.size() + kTableEntryBytes;
         out.blocks.push_back(std::move(block));
         ended = made;
-        target = std::min<std::size_t>(options.block_bytes, 2 * target);
+        next_target();
     };
-    encoder.code_splits(coder, [&](const SplitPlan& plan, float error) {
+    encoder.code_splits(coder, [&](const SplitPlan& plan, float error, bool sweep_end) {
         output.add(plan, error);
         ++made;
-        if (coder.size() >= target) end_block();
+        if (coder.size() >= target || (sweep_end && double(coder.size()) >= kEnoughBlock * double(target)))
+            end_block();
     });
     if (made > ended) end_block();
 

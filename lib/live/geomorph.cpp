@@ -6,6 +6,7 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace vsplit {
 namespace {
@@ -28,12 +29,15 @@ Geomorph::Geomorph(const LiveBuffers& from)
       to_(from_),
       triangles_(from.triangles().begin(), from.triangles().end()) {}
 
-void Geomorph::turn(const LiveBuffers& to) {
+void Geomorph::turn(const LiveBuffers& to, double t) {
     const auto places = to.positions();
+    blend(t);
+    std::swap(from_, mixed_);
     if (to.level() >= level_) {
         to_.assign(places.begin(), places.end());
         descend(from_, to.parents(), to_.size(), to_);
         triangles_.assign(to.triangles().begin(), to.triangles().end());
+        level_ = to.level();
     } else {
         to_.assign(places.begin(), places.end());
         // Parents of vertices that are not alive any more are still known.
@@ -52,23 +56,28 @@ std::span<const Float3> Geomorph::blend(double t) {
     return mixed_;
 }
 
-std::vector<double> share_triangles(std::span<const BudgetItem> items, std::uint64_t triangles) {
+namespace {
+
+/// The smallest error on the screen, the same for all, at which the sum of costs is within `budget`.
+/// `cost` is what an item takes: after a block, or (null) for its base mesh alone.
+template <class Cost>
+std::vector<double> share(std::span<const BudgetItem> items, std::uint64_t budget, Cost cost) {
     const auto error_for = [](const BudgetItem& item, double pixels) {
         return item.pixels_a_unit > 0 ? pixels / item.pixels_a_unit : std::numeric_limits<double>::max();
     };
-    // Triangles after the block that brings a mesh within its error.
-    const auto count = [&](double pixels) {
+    const auto sum_at = [&](double pixels) {
         std::uint64_t sum = 0;
         for (const BudgetItem& item : items) {
             const double error = error_for(item, pixels);
             const auto& blocks = item.info->blocks;
-            if (double(item.info->base_error) <= error) {
-                sum += item.info->base_triangles;
+            if (double(item.info->base_error) <= error || blocks.empty()) {
+                sum += cost(*item.info, nullptr);
                 continue;
             }
+            // The block that brings it within its error.
             const auto at = std::partition_point(blocks.begin(), blocks.end(),
                                                  [&](const BlockInfo& b) { return double(b.error) > error; });
-            sum += at == blocks.end() ? item.info->triangles : at->triangles_end;
+            sum += cost(*item.info, at == blocks.end() ? &blocks.back() : &*at);
         }
         return sum;
     };
@@ -76,16 +85,30 @@ std::vector<double> share_triangles(std::span<const BudgetItem> items, std::uint
     for (const BudgetItem& item : items)
         coarse = std::max(coarse, double(item.info->base_error) * std::max(item.pixels_a_unit, 0.0));
     if (std::isinf(coarse)) coarse = std::numeric_limits<double>::max() / 4;
-    if (count(0) <= triangles)
+    if (sum_at(0) <= budget)
         coarse = 0;
     else
         for (int i = 0; i < 60; ++i) {
             const double middle = fine + (coarse - fine) / 2;
-            (count(middle) <= triangles ? coarse : fine) = middle;
+            (sum_at(middle) <= budget ? coarse : fine) = middle;
         }
     std::vector<double> out;
     for (const BudgetItem& item : items) out.push_back(error_for(item, coarse));
     return out;
+}
+
+}  // namespace
+
+std::vector<double> share_triangles(std::span<const BudgetItem> items, std::uint64_t triangles) {
+    return share(items, triangles, [](const FileInfo& info, const BlockInfo* block) -> std::uint64_t {
+        return block ? block->triangles_end : info.base_triangles;
+    });
+}
+
+std::vector<double> share_bytes(std::span<const BudgetItem> items, std::uint64_t bytes) {
+    return share(items, bytes, [](const FileInfo& info, const BlockInfo* block) {
+        return block ? block->offset + block->bytes : info.data_offset;
+    });
 }
 
 }  // namespace vsplit

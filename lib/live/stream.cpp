@@ -1,73 +1,22 @@
 // SPDX-FileCopyrightText: 2026 The vsplit authors
 // SPDX-License-Identifier: MIT
-#include "vsplit/stream.hpp"
-
 #include <algorithm>
 #include <cassert>
-#include <cmath>
-#include <map>
 #include <string>
 #include <utility>
 
 #include "../bytes/checksum.hpp"
 #include "../bytes/layout.hpp"
-#include "gather.hpp"
+#include "stream_state.hpp"
 
 namespace vsplit {
 namespace {
 
-constexpr std::size_t kFirstRequest = 16 * 1024;
 constexpr std::uint32_t kTableOffsetAt = 160, kBlockCountAt = 24;
 /// Splits between two looks at the clock.
 constexpr std::size_t kStride = 4096;
 
-std::uint64_t clamped_count(double value) {
-    if (!(value > 0)) return 0;
-    return value >= 4294967295.0 ? 4294967295u : std::uint64_t(value);
-}
-
 }  // namespace
-
-struct Stream::State {
-    explicit State(StreamOptions given) : options(std::move(given)) {}
-
-    StreamOptions options;
-    Target target;
-    Gather front{0, kFirstRequest};
-    std::optional<std::uint64_t> file_size;
-    std::optional<FileInfo> info;
-    std::optional<BlockDecoder> decoder;  // none before the base mesh, after the last block, or lent to a job
-    bool lent = false;
-    std::map<std::size_t, Gather> pending;                // blocks that are here, whole or in part
-    std::map<std::size_t, std::vector<std::byte>> whole;  // and checked
-    std::map<std::size_t, int> failures;                  // kFront for the front
-    std::size_t decoded = 0;
-    std::uint64_t pending_bytes = 0, received = 0;
-    bool broken = false;
-    std::optional<Error> error;
-    LiveBuffers live;
-
-    static constexpr std::size_t kFront = ~std::size_t{0};
-
-    Error fail(Error what, bool final) {
-        broken |= final;
-        error = what;
-        return what;
-    }
-    /// Counts a failure that another try may mend.
-    Error retry(std::size_t part, Error what) {
-        const int times = ++failures[part];
-        if (times >= options.tries) what.message += " (" + std::to_string(times) + " tries: given up)";
-        return fail(std::move(what), times >= options.tries);
-    }
-
-    Status take_front();
-    Status take_block(std::size_t block);
-    void drop_far(std::size_t keep);
-    std::size_t blocks_for_target() const;
-    std::size_t level_for_target() const;
-    bool has(std::size_t block) const { return block < decoded || whole.contains(block); }
-};
 
 // ---- Bytes in
 
@@ -114,8 +63,9 @@ Status Stream::State::take_front() {
                             true);
         info = *std::move(read);
     }
-    auto begun = BlockDecoder::begin(
-        bytes.first(std::min<std::size_t>(bytes.size(), std::size_t(info->data_offset))), options.limits);
+    auto begun =
+        BlockDecoder::begin(bytes.first(std::min<std::size_t>(bytes.size(), std::size_t(info->data_offset))),
+                            options.limits, options.decode_base);
     if (!begun) {
         Error what = begun.error();
         if (what.code != ErrorCode::kChecksum) return fail(std::move(what), true);
@@ -125,9 +75,9 @@ Status Stream::State::take_front() {
     }
     decoder = *std::move(begun);
     live.begin(decoder->mesh(), info->vertices, info->triangles, info->splits, info->corner_changes,
-               info->moves);
+               info->moves, grid_of(*info));
     if (info->blocks.empty()) decoder.reset();
-    return Ok{};
+    return selective_wanted ? begin_selective() : Ok{};
 }
 
 Status Stream::State::take_block(std::size_t block) {
@@ -254,58 +204,6 @@ std::vector<ByteRange> Stream::wants(std::uint64_t most_bytes, std::size_t ahead
     return out;
 }
 
-// ---- Levels
-
-/// How many blocks hold the target's level.
-std::size_t Stream::State::blocks_for_target() const {
-    const auto& blocks = info->blocks;
-    const auto first = [&](auto&& is_enough) {
-        const auto at = std::partition_point(blocks.begin(), blocks.end(),
-                                             [&](const BlockInfo& b) { return !is_enough(b); });
-        return std::min(std::size_t(at - blocks.begin()) + 1, blocks.size());
-    };
-    switch (target.kind) {
-        case Target::Kind::kRatio: {
-            const std::uint64_t count = clamped_count(std::round(target.value * double(info->triangles)));
-            return first([&](const BlockInfo& b) { return b.triangles_end > count; });
-        }
-        case Target::Kind::kTriangles:
-            return first([&](const BlockInfo& b) { return b.triangles_end > clamped_count(target.value); });
-        case Target::Kind::kVertices:
-            return first([&](const BlockInfo& b) { return b.vertices_end > clamped_count(target.value); });
-        case Target::Kind::kError:
-        case Target::Kind::kPixels:
-            if (double(info->base_error) <= target.value) return 0;
-            return first([&](const BlockInfo& b) { return double(b.error) <= target.value; });
-    }
-    return blocks.size();
-}
-
-std::size_t Stream::State::level_for_target() const {
-    // Within what is decoded, error() of the last level is that of the table.
-    const auto coarsest = [&](double most) {
-        const float here = decoded == 0 ? info->base_error : info->blocks[decoded - 1].error;
-        return double(here) > most ? live.available() : live.level_for_error(most);
-    };
-    switch (target.kind) {
-        case Target::Kind::kRatio:
-            return live.level_for_triangles(
-                clamped_count(std::round(target.value * double(info->triangles))));
-        case Target::Kind::kTriangles:
-            return live.level_for_triangles(clamped_count(target.value));
-        case Target::Kind::kVertices:
-            return live.level_for_vertices(clamped_count(target.value));
-        case Target::Kind::kError:
-            return coarsest(target.value);
-        case Target::Kind::kPixels: {
-            const std::size_t least = coarsest(target.value);
-            const std::size_t most = coarsest(target.value / (1 + std::max(0.0, options.hysteresis)));
-            return std::clamp(live.level(), least, std::max(least, most));
-        }
-    }
-    return live.available();
-}
-
 Result<Updated> Stream::update(const Budget& budget) {
     State& s = *state_;
     Updated out;
@@ -327,6 +225,13 @@ Result<Updated> Stream::update(const Budget& budget) {
         job->run();
         if (Status done = finish_job(std::move(*job)); !done) return done.error();
         ++blocks;
+    }
+    if (s.selective) {
+        const bool settled = s.update_selective(budget, out);
+        const bool all = s.decoded >= s.blocks_for_target();
+        out.reached = all && settled;
+        out.wants_bytes = !all && !stop && !s.lent && !s.broken && !s.whole.contains(s.decoded);
+        return out;
     }
     const std::size_t wanted = s.level_for_target();
     while (s.live.level() != wanted && out.splits < budget.max_splits) {
@@ -376,12 +281,22 @@ Status Stream::finish_job(DecodeJob&& job) {
     }
     ++s.decoded;
     s.live.append(s.decoder->mesh());
+    Status planned = Ok{};
+    if (s.selective && !(planned = s.selective->append(s.decoder->mesh()))) {
+        s.selective.reset();
+        s.selective_wanted = false;
+    }
     if (s.decoded == s.info->blocks.size()) s.decoder.reset();
-    return Ok{};
+    return planned ? planned : Status(s.fail(planned.error(), false));
 }
 
 void Stream::jump_to_target() {
-    if (ready()) state_->live.jump(state_->level_for_target());
+    State& s = *state_;
+    Updated unused;
+    if (s.selective)
+        s.update_selective({}, unused);
+    else if (ready())
+        s.live.jump(s.level_for_target());
 }
 
 // ---- The rest
@@ -425,7 +340,7 @@ float Stream::level_error() const {
     if (!s.info) return 0;
     // The live mesh knows the error before each split that has come; after the last one, the table does.
     if (s.live.level() < s.live.available()) return s.live.error_at(s.live.level());
-    return s.decoded == 0 ? s.info->base_error : s.info->blocks[s.decoded - 1].error;
+    return s.error_after(s.decoded);
 }
 const LiveBuffers& Stream::buffers() const {
     return state_->live;

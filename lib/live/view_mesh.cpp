@@ -1,94 +1,28 @@
 // SPDX-FileCopyrightText: 2026 The vsplit authors
 // SPDX-License-Identifier: MIT
-#include "vsplit/view_mesh.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
 #include "exchange.hpp"
-#include "view_plan.hpp"
+#include "extend.hpp"
+#include "prefetch.hpp"
+#include "view_state.hpp"
 
 namespace vsplit {
 namespace {
 
-constexpr std::uint32_t kPage = 64;
-
-/// Pages of a buffer that changed.
-class Pages {
-  public:
-    void resize(std::size_t elements) { pages_.assign((elements + kPage - 1) / kPage, 1); }
-    void mark(std::uint32_t element) { pages_[element / kPage] = 1; }
-    void take(std::size_t alive, std::vector<ViewMesh::Range>& ranges) {
-        for (std::size_t page = 0; page < pages_.size(); ++page) {
-            if (!std::exchange(pages_[page], std::uint8_t{0}) || page * kPage >= alive) continue;
-            const auto begin = std::uint32_t(page * kPage);
-            const auto end = std::uint32_t(std::min<std::size_t>(alive, (page + 1) * kPage));
-            if (!ranges.empty() && ranges.back().end == begin)
-                ranges.back().end = end;
-            else
-                ranges.push_back({begin, end});
-        }
-    }
-    std::size_t memory() const { return pages_.capacity(); }
-
-  private:
-    std::vector<std::uint8_t> pages_;
-};
-
-/// An active vertex with what a camera must know of it, side by side: a frame reads them in a row.
-struct Front {
-    std::uint32_t vertex = 0;
-    std::uint32_t following = kNoSplit, current = kNoSplit;  ///< In its chain of splits: to do, and done.
-    ViewNode after, done;                                    ///< Of these two.
-};
-
-template <class T>
-std::size_t bytes_of(const std::vector<T>& v) {
-    return v.capacity() * sizeof(T);
-}
+constexpr std::size_t kAhead = 12;  // places between the one fetched and the one looked at
 
 }  // namespace
-
-struct ViewMesh::State {
-    ProgressiveMesh mesh;
-    ViewPlan plan;
-    std::vector<std::uint8_t> applied;  ///< Of each split.
-    std::vector<std::uint32_t> users;   ///< Of each split: applied ones that need it.
-    std::vector<Triangle> drawn;
-    std::vector<std::uint32_t> number, slot;  ///< Of a drawn triangle its number, and back.
-    std::vector<Front> active;
-    std::vector<std::uint32_t> place;  ///< Of an active vertex: where it is among them.
-    std::vector<std::uint32_t> stack;
-    std::size_t applied_count = 0, cursor = 0, returning_cursor = 0;
-    Pages dirty_triangles, dirty_vertices;
-
-    void begin();
-    Split before(std::uint32_t k) const {
-        return k == 0 ? Split{mesh.base_vertices, mesh.base_triangles, 0, 0, 0} : mesh.splits[k - 1];
-    }
-    void add_triangle(std::uint32_t t);
-    void remove_triangle(std::uint32_t t);
-    void apply(std::uint32_t k);
-    void undo(std::uint32_t k);
-    std::size_t force(std::uint32_t k, std::size_t most);
-    void add_vertex(std::uint32_t v);
-    void turn(std::uint32_t anchor, std::uint32_t following, std::uint32_t current);
-    bool wanted(const View& view, const ViewNode& node) const {
-        return pixels(view, node) > std::max(view.pixels, 0.0f);
-    }
-    bool unwanted(const View& view, const ViewNode& node) const {
-        return !(pixels(view, node) > std::max(view.pixels, 0.0f) * view.hysteresis);
-    }
-    static float pixels(const View& view, const ViewNode& node);
-};
 
 void ViewMesh::State::add_triangle(std::uint32_t t) {
     slot[t] = std::uint32_t(drawn.size());
     dirty_triangles.mark(slot[t]);
     drawn.push_back(mesh.triangles[t]);
     number.push_back(t);
+    if (!mesh.groups.empty()) drawn_groups.push_back(mesh.groups[t]);
 }
 
 void ViewMesh::State::remove_triangle(std::uint32_t t) {
@@ -99,6 +33,10 @@ void ViewMesh::State::remove_triangle(std::uint32_t t) {
     dirty_triangles.mark(hole);
     drawn.pop_back();
     number.pop_back();
+    if (!mesh.groups.empty()) {
+        drawn_groups[hole] = drawn_groups.back();
+        drawn_groups.pop_back();
+    }
 }
 
 void ViewMesh::State::add_vertex(std::uint32_t v) {
@@ -114,22 +52,6 @@ void ViewMesh::State::turn(std::uint32_t anchor, std::uint32_t following, std::u
     front.current = current;
     if (following != kNoSplit) front.after = plan.nodes[following];
     if (current != kNoSplit) front.done = plan.nodes[current];
-}
-
-void ViewMesh::State::begin() {
-    const std::size_t vertices = mesh.positions.size(), triangles = mesh.triangles.size();
-    applied.assign(mesh.splits.size(), 0);
-    users.assign(mesh.splits.size(), 0);
-    drawn.reserve(triangles);
-    number.reserve(triangles);
-    slot.resize(triangles);
-    active.reserve(vertices);
-    place.resize(vertices);
-    stack.reserve(mesh.splits.size());
-    dirty_triangles.resize(triangles);
-    dirty_vertices.resize(vertices);
-    for (std::uint32_t t = 0; t < mesh.base_triangles; ++t) add_triangle(t);
-    for (std::uint32_t v = 0; v < mesh.base_vertices; ++v) add_vertex(v);
 }
 
 void ViewMesh::State::apply(std::uint32_t k) {
@@ -203,16 +125,15 @@ std::size_t ViewMesh::State::force(std::uint32_t k, std::size_t most) {
 
 /// What a split's error spans on the screen (Hoppe 1997, section 4: sphere against frustum, cone of normals
 /// against the eye, deviation over distance).
-float ViewMesh::State::pixels(const View& view, const ViewNode& node) {
+float ViewMesh::State::pixels(const Frame& frame, const ViewNode& node) {
+    const View& view = frame.view;
     constexpr float kAll = std::numeric_limits<float>::infinity();
     const Float3& p = node.centre;
     const float x = view.eye.x - p.x, y = view.eye.y - p.y, z = view.eye.z - p.z;
     const float square = x * x + y * y + z * z;
     // Most are too small from this far, which takes neither a root nor a plane to see.
-    if (const float low = view.pixels * view.hysteresis; low > 0) {
-        const float reach = node.radius + node.error * view.pixels_at_distance_1 / low;
-        if (square >= reach * reach && square > node.radius * node.radius) return 0;
-    }
+    const float reach = node.radius + node.error * frame.reach;
+    if (square >= reach * reach && square > node.radius * node.radius) return 0;
     for (const ViewPlane& plane : view.planes)
         if (plane.x * p.x + plane.y * p.y + plane.z * p.z + plane.w < -node.radius) return 0;
     if (!(view.pixels > 0)) return kAll;
@@ -236,67 +157,70 @@ ViewMesh::ViewMesh(ViewMesh&&) noexcept = default;
 ViewMesh& ViewMesh::operator=(ViewMesh&&) noexcept = default;
 ViewMesh::~ViewMesh() = default;
 
-Result<ViewMesh> ViewMesh::make(ProgressiveMesh mesh) {
-    auto state = std::make_unique<State>();
-    state->mesh = std::move(mesh);
-    if (state->mesh.positions.empty()) state->mesh.splits.clear();  // They have nothing to do.
-    if (!plan_view(state->mesh, state->plan))
-        return Error{ErrorCode::kLimit, "too many triangles meet where the mesh is split", Error::kNowhere,
-                     0};
-    state->begin();
-    return ViewMesh(std::move(state));
+/// Looks at one place of the ring of splits without a parent and of active vertices.
+void ViewMesh::State::visit(const Frame& frame, std::size_t at, std::size_t most, ViewUpdated& result) {
+    const auto left = [&] { return most - result.refined - result.coarsened; };
+    if (at < plan.returning.size()) {
+        const std::uint32_t k = plan.returning[at];
+        const ViewNode& node = plan.nodes[k];
+        if (!applied[k]) {
+            if (wanted(frame, node)) result.refined += force(k, left());
+        } else if (users[k] == 0 && unwanted(frame, node)) {
+            undo(k);
+            ++result.coarsened;
+        }
+        return;
+    }
+    const Front& seen = active[at - plan.returning.size()];
+    const bool finer = seen.following != kNoSplit && wanted(frame, seen.after);
+    if (!finer && (seen.current == kNoSplit || users[seen.current] != 0 || !unwanted(frame, seen.done)))
+        return;
+    const std::uint32_t v = seen.vertex;
+    const std::size_t changed_before = result.refined + result.coarsened;
+    // Its place may change with every split.
+    const auto front = [&]() -> const Front& { return active[place[v]]; };
+    while (left() > 0 && front().following != kNoSplit && wanted(frame, front().after))
+        result.refined += force(front().following, left());
+    if (result.refined + result.coarsened == changed_before)
+        while (left() > 0 && front().current != kNoSplit && unwanted(frame, front().done) &&
+               users[front().current] == 0) {
+            undo(front().current);
+            ++result.coarsened;
+        }
 }
 
 ViewUpdated ViewMesh::update(const View& view, const ViewBudget& budget) {
     State& s = *state_;
     ViewUpdated result;
-    const auto left = [&] { return budget.max_splits - result.refined - result.coarsened; };
-    const auto refine = [&](std::uint32_t k) { result.refined += s.force(k, left()); };
+    Clock clock(budget.out_of_time);
+    const Frame frame(view);
     bool whole = true;
-    const std::size_t returning = s.plan.returning.size();
-    for (std::size_t i = 0; i < returning; ++i, ++result.visits) {
-        if (left() == 0 || result.visits >= budget.max_visits) {
+    for (std::size_t i = 0; i < s.plan.returning.size() + s.active.size(); ++i, ++result.visits) {
+        const std::size_t changes = result.refined + result.coarsened;
+        if (changes >= budget.max_splits || result.visits >= budget.max_visits ||
+            clock.late(result.visits + changes)) {
             whole = false;
             break;
         }
-        if (s.returning_cursor >= returning) s.returning_cursor = 0;
-        const std::uint32_t k = s.plan.returning[s.returning_cursor++];
-        const ViewNode& node = s.plan.nodes[k];
-        if (!s.applied[k]) {
-            if (s.wanted(view, node)) refine(k);
-        } else if (s.users[k] == 0 && s.unwanted(view, node)) {
-            s.undo(k);
-            ++result.coarsened;
-        }
-    }
-    for (std::size_t i = 0; i < s.active.size(); ++i, ++result.visits) {
-        if (left() == 0 || result.visits >= budget.max_visits) {
-            whole = false;
-            break;
-        }
-        if (s.cursor >= s.active.size()) s.cursor = 0;
-        const Front& seen = s.active[s.cursor++];
-        const bool finer = seen.following != kNoSplit && s.wanted(view, seen.after);
-        if (!finer && (seen.current == kNoSplit || !s.unwanted(view, seen.done))) continue;
-        const std::uint32_t v = seen.vertex;
-        const std::size_t changed = result.refined + result.coarsened;
-        // Its place may change with every split.
-        const auto front = [&]() -> const Front& { return s.active[s.place[v]]; };
-        while (left() > 0 && front().following != kNoSplit && s.wanted(view, front().after))
-            refine(front().following);
-        if (result.refined + result.coarsened == changed)
-            while (left() > 0 && front().current != kNoSplit && s.unwanted(view, front().done) &&
-                   s.users[front().current] == 0) {
-                s.undo(front().current);
-                ++result.coarsened;
-            }
+        if (s.cursor >= s.plan.returning.size() + s.active.size()) s.cursor = 0;
+        if (const std::size_t ahead = s.cursor + kAhead - s.plan.returning.size(); ahead < s.active.size())
+            if (const std::uint32_t current = s.active[ahead].current; current != kNoSplit)
+                prefetch(&s.users[current]);
+        s.visit(frame, s.cursor++, budget.max_splits, result);
     }
     result.settled = whole && result.refined + result.coarsened == 0;
+    if (result.refined + result.coarsened > 0) s.forget_place();
     return result;
 }
 
 std::span<const Triangle> ViewMesh::triangles() const {
     return state_->drawn;
+}
+std::span<const std::uint32_t> ViewMesh::groups() const {
+    return state_->drawn_groups;
+}
+std::span<const std::uint32_t> ViewMesh::parents() const {
+    return state_->mesh.parents;
 }
 std::span<const Float3> ViewMesh::positions() const {
     return state_->mesh.positions;
@@ -333,11 +257,14 @@ std::size_t ViewMesh::memory() const {
     for (const Attribute& attribute : m.attributes) bytes += bytes_of(attribute.values);
     for (const auto& values : m.moved_values) bytes += bytes_of(values);
     const ViewPlan& p = s.plan;
-    for (const auto* v : {&p.needs_begin, &p.needs, &p.vertex, &p.next, &p.previous, &p.first, &p.born,
-                          &p.returning, &s.users, &s.number, &s.slot, &s.place, &s.stack})
+    for (const auto* v :
+         {&p.needs_begin, &p.needs, &p.vertex, &p.next, &p.previous, &p.first, &p.born, &p.returning,
+          &s.users, &s.number, &s.slot, &s.drawn_groups, &s.place, &s.stack, &s.changed})
         bytes += bytes_of(*v);
+    for (const auto* v : {&p.own_error, &s.of_vertex, &s.of_split}) bytes += bytes_of(*v);
+    if (s.planner) bytes += s.planner->memory();
     return bytes + bytes_of(s.active) + bytes_of(p.nodes) + bytes_of(s.applied) + bytes_of(s.drawn) +
-           s.dirty_triangles.memory() + s.dirty_vertices.memory();
+           s.order.memory() + s.dirty_triangles.memory() + s.dirty_vertices.memory();
 }
 
 }  // namespace vsplit

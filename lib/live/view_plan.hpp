@@ -6,6 +6,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <span>
 #include <vector>
 
 #include "vsplit/progressive_mesh.hpp"
@@ -23,18 +25,46 @@ struct ViewNode {
     float spread = 1;  ///< Sine of the largest angle to them; 1 from a right angle on.
 };
 
+/// Grows with the splits that are known: what is known of later ones counts for those above them.
 struct ViewPlan {
     /// The splits that must be applied before split k: needs[needs_begin[k]] up to needs_begin[k + 1].
-    std::vector<std::uint32_t> needs_begin, needs;
+    std::vector<std::uint32_t> needs_begin{0}, needs;
     std::vector<ViewNode> nodes;
+    std::vector<float> own_error;               ///< Of each split: its own distance to the coarser surface.
     std::vector<std::uint32_t> vertex;          ///< Of each split: the parent, or kNoVertex.
     std::vector<std::uint32_t> next, previous;  ///< Splits of the same parent, or kNoSplit.
     std::vector<std::uint32_t> first;           ///< Of each vertex: its first split, or kNoSplit.
-    std::vector<std::uint32_t> born;       ///< Of each vertex: the split that makes it; empty afterwards.
-    std::vector<std::uint32_t> returning;  ///< Splits without a parent.
+    std::vector<std::uint32_t> born;            ///< Of each vertex: the split that makes it, or kNoSplit.
+    std::vector<std::uint32_t> returning;       ///< Splits without a parent.
+
+    /// The split that answers for this one: the one before of its vertex, or the one that makes that.
+    std::uint32_t above(std::uint32_t split) const {
+        if (previous[split] != kNoSplit || vertex[split] == kNoVertex) return previous[split];
+        return born[vertex[split]];
+    }
+    /// Errors count as often as the splits' weights say, those of all splits.
+    void weigh(std::span<const float> weights);
 };
 
-/// False if the stars around the splits are too large in all. `mesh` is at level 0, and is left so.
-bool plan_view(ProgressiveMesh& mesh, ViewPlan& plan);
+/// Replays the sequence once, as far as it is known, and goes on when more of it is.
+class ViewPlanner {
+  public:
+    explicit ViewPlanner(ViewPlan& plan);
+    ~ViewPlanner();
+
+    /// `mesh` is what it was before and more, at level 0. `weight` of each new split multiplies its error (1
+    /// if empty). Appends to `changed` the older splits whose nodes are not what they were; ascending within
+    /// nothing, and possibly more than once. False if the stars around the splits are too large in all: the
+    /// plan is then of no use.
+    bool extend(const ProgressiveMesh& mesh, std::span<const float> weight,
+                std::vector<std::uint32_t>& changed);
+
+    /// Bytes allocated.
+    std::size_t memory() const;
+
+  private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
 
 }  // namespace vsplit

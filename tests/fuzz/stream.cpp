@@ -2,12 +2,14 @@
 // SPDX-License-Identifier: MIT
 //
 // libFuzzer target: a file that arrives in pieces of any size from anywhere, shown at any target in between,
-// forward and back. The last bytes of the input say how; the rest is the file, its checksums made to fit.
-// What the dirty ranges name is all that a renderer copies, and must be all that changed.
+// forward and back, or refined where a view or priorities say. The last bytes of the input say how; the rest
+// is the file, its checksums made to fit. What the dirty ranges name is all that a renderer copies, and must
+// be all that changed.
 #include "vsplit/stream.hpp"
 
 #include <algorithm>
 #include <cstdlib>
+#include <optional>
 
 #include "reseal_all.hpp"
 #include "vsplit/live_mesh.hpp"
@@ -42,6 +44,31 @@ struct Renderer {
     }
 };
 
+/// The same of a selective mesh, whose triangles are packed.
+struct SelectiveRenderer {
+    std::vector<Float3> positions;
+    std::vector<Triangle> triangles;
+
+    void take(ViewMesh& mesh) {
+        const ViewMesh::Dirty dirty = mesh.take_dirty();
+        positions.resize(mesh.positions().size());
+        triangles.resize(mesh.triangles().size());
+        for (const auto& [begin, end] : dirty.vertices)
+            for (std::uint32_t v = begin; v < end; ++v) positions.at(v) = mesh.positions()[v];
+        for (const auto& [begin, end] : dirty.triangles)
+            for (std::uint32_t t = begin; t < end; ++t) triangles.at(t) = mesh.triangles()[t];
+        require(
+            std::equal(triangles.begin(), triangles.end(), mesh.triangles().begin(), mesh.triangles().end()));
+        require(
+            std::equal(positions.begin(), positions.end(), mesh.positions().begin(), mesh.positions().end()));
+        for (const Triangle& t : triangles) {
+            for (const std::uint32_t corner : t) require(corner < positions.size());
+            require(t[0] != t[1] && t[1] != t[2] && t[2] != t[0]);
+        }
+        require(mesh.groups().empty() || mesh.groups().size() == triangles.size());
+    }
+};
+
 /// The numbers that the input's end holds, over and over.
 struct Script {
     static constexpr std::size_t kBytes = 32;
@@ -64,6 +91,19 @@ struct Script {
                 return Target::pixels(share);
         }
     }
+
+    CameraView view() {
+        CameraView out;
+        const auto place = [&] { return (float(next()) - 128) / 16; };
+        out.camera = {{place(), place(), place()}, 0.8, 1000};
+        out.pixels = float(next()) / 8;
+        if (next() % 2) {
+            out.to_clip.emplace();
+            for (float& value : *out.to_clip) value = place();
+        }
+        if (next() % 8 == 0) out.to_world[next() % 16] = place();
+        return out;
+    }
 };
 
 }  // namespace
@@ -79,6 +119,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     options.max_pending_bytes = 64 + 256 * script.next();
     Stream stream(options);
     Renderer renderer;
+    std::optional<SelectiveRenderer> selective;
     for (int step = 0; step < 96 && !stream.broken(); ++step) {
         if (script.next() % 4 == 0) stream.set_target(script.target());
         // What is wanted, less of it, or anything.
@@ -97,14 +138,36 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                 job->run();
                 static_cast<void>(stream.finish_job(*std::move(job)));
             }
+        if (script.next() % 8 == 0) {
+            if (!stream.set_selective(script.next() % 4 != 0).ok()) require(!stream.selective());
+            selective.reset();
+        }
+        if (script.next() % 4 == 0)
+            script.next() % 4 == 0 ? stream.clear_view() : stream.set_view(script.view());
+        if (ViewMesh* const mesh = stream.selective(); mesh && script.next() % 8 == 0) {
+            std::vector<float> priority(script.next() % (mesh->positions().size() + 1));
+            for (float& p : priority) p = float(script.next());
+            script.next() % 4 == 0 ? mesh->use_weights() : require(mesh->set_priority(priority).ok());
+        }
         const std::size_t most = script.next() % 2 ? ~std::size_t{0} : 1 + script.next();
-        const auto updated = stream.update({most, 1 + script.next() % 4, {}});
+        const std::size_t visits = script.next() % 2 ? ~std::size_t{0} : 1 + script.next();
+        const auto updated = stream.update({most, 1 + script.next() % 4, {}, visits});
         if (updated) require(updated->splits <= most);
         if (script.next() % 8 == 0) stream.jump_to_target();
         if (stream.ready()) renderer.take(stream.buffers());
+        if (ViewMesh* const mesh = stream.selective()) {
+            if (!selective)
+                mesh->take_dirty(),
+                    selective = SelectiveRenderer{{mesh->positions().begin(), mesh->positions().end()},
+                                                  {mesh->triangles().begin(), mesh->triangles().end()}};
+            selective->take(*mesh);
+        } else {
+            selective.reset();
+        }
     }
     require(!stream.broken() || stream.error().has_value());
     if (stream.ready()) renderer.take(stream.buffers());
+    static_cast<void>(stream.set_selective(false));
     // What arrived whole is what the reader reads.
     if (stream.complete() && !stream.broken()) {
         stream.set_target(Target::ratio(1));

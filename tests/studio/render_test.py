@@ -2,6 +2,7 @@
 # SPDX-FileCopyrightText: 2026 The vsplit authors
 # SPDX-License-Identifier: MIT
 """render_test.py VSPLIT: `vsplit render` draws what it is told, off the screen, on an X server that xvfb-run gives."""
+import json
 import os
 import pathlib
 import shutil
@@ -18,13 +19,15 @@ class RenderTest(unittest.TestCase):
         self.folder = pathlib.Path(tempfile.mkdtemp(prefix='vsplit-render-'))
         self.addCleanup(shutil.rmtree, self.folder, ignore_errors=True)
 
-    def run_vsplit(self, *arguments, display=True, code=0):
+    def run_vsplit(self, *arguments, display=True, code=0, name=None):
         command = [VSPLIT, *map(str, arguments)]
         environment = dict(os.environ)
         if display:
             command = ['xvfb-run', '-a', *command]
         else:
             environment.pop('DISPLAY', None)
+            if name:
+                environment['DISPLAY'] = name
         ran = subprocess.run(command, cwd=self.folder, env=environment, capture_output=True, timeout=120, check=False)
         self.assertEqual(ran.returncode, code, ran.stderr.decode())
         return ran
@@ -53,7 +56,17 @@ class RenderTest(unittest.TestCase):
         # Twice the same is the same.
         self.run_vsplit('render', 'whale.pmesh', *size, '-o', 'again.png')
         self.assertEqual(self.pixels('again.png'), self.pixels('0.png'))
-        self.run_vsplit('render', 'whale.pmesh', '-o', 'x.png', display=False, code=3)
+        ran = self.run_vsplit('render', 'whale.pmesh', '--ratio', '0.25', '-o', 'told.png', '--json')
+        told = json.loads(ran.stdout)
+        self.assertEqual((told['output'], told['size'], told['bytes']), ('told.png', '1280x800', (self.folder / 'told.png').stat().st_size))
+        self.assertAlmostEqual(told['ratio'], 0.25, delta=0.01)
+        self.assertGreater(told['error'], 0)
+        # Without a display, and with one that is not there: an answer, and no picture.
+        for display in (None, ':4242'):
+            for command in (('render', 'whale.pmesh', '-o', 'x.png'), ('studio', 'whale.pmesh')):
+                ran = self.run_vsplit(*command, display=False, code=3, name=display)
+                self.assertIn('xvfb-run', ran.stderr.decode())
+        self.assertFalse((self.folder / 'x.png').exists())
         self.run_vsplit('render', 'whale.pmesh', '-o', 'x.gif', display=False, code=2)
         self.run_vsplit('render', 'whale.pmesh', '--view', 'inside', '-o', 'x.png', display=False, code=2)
         self.run_vsplit('render', 'whale.pmesh', '--size', '1x1', '-o', 'x.png', display=False, code=2)

@@ -4,10 +4,12 @@
 """window_test.py VSPLIT [PICTURES]: the studio's real window on an X server of its own, with a synthetic mouse and keyboard (xdotool).
 Pictures of the screen are looked at by their pixels, and kept in the folder PICTURES if it is named."""
 import json
+import math
 import os
 import pathlib
 import shutil
 import signal
+import struct
 import subprocess
 import sys
 import tempfile
@@ -43,6 +45,38 @@ class Picture:
                 want_high, want_low = max(colour), min(colour)
                 count += all(abs((c - low) / (high - low) - (w - want_low) / (want_high - want_low)) < 0.2 for c, w in zip((r, g, b), colour))
         return count
+
+
+def write_scene(path):
+    """Two spheres, red and green, as two meshes at three nodes: the green one is there twice."""
+    rows, columns = 16, 24
+    points, corners = [], []
+    for i in range(rows + 1):
+        for j in range(columns):
+            a, b = math.pi * i / rows, 2 * math.pi * j / columns
+            points.append((math.sin(a) * math.cos(b), math.cos(a), math.sin(a) * math.sin(b)))
+    at = lambda i, j: i * columns + j % columns
+    for i in range(rows):
+        for j in range(columns):
+            corners += [] if i == 0 else [at(i, j), at(i, j + 1), at(i + 1, j)]
+            corners += [] if i == rows - 1 else [at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)]
+    data = struct.pack(f'<{3 * len(points)}f', *(c for p in points for c in p)) + struct.pack(f'<{len(corners)}I', *corners)
+    first = 12 * len(points)
+    primitive = lambda material: {'attributes': {'POSITION': 0}, 'indices': 1, 'material': material}
+    document = {
+        'asset': {'version': '2.0'}, 'scene': 0, 'scenes': [{'nodes': [0, 1, 2]}],
+        'nodes': [{'mesh': 0, 'translation': [-2.5, 0, 0]}, {'mesh': 1}, {'mesh': 1, 'translation': [2.5, 0, 0], 'scale': [1, 0.7, 1]}],
+        'meshes': [{'primitives': [primitive(0)]}, {'primitives': [primitive(1)]}],
+        'materials': [{'name': 'red', 'pbrMetallicRoughness': {'baseColorFactor': [0.8, 0.02, 0.02, 1]}},
+                      {'name': 'green', 'pbrMetallicRoughness': {'baseColorFactor': [0.02, 0.6, 0.02, 1]}}],
+        'accessors': [{'bufferView': 0, 'componentType': 5126, 'count': len(points), 'type': 'VEC3', 'min': [-1, -1, -1], 'max': [1, 1, 1]},
+                      {'bufferView': 1, 'componentType': 5125, 'count': len(corners), 'type': 'SCALAR'}],
+        'bufferViews': [{'buffer': 0, 'byteOffset': 0, 'byteLength': first}, {'buffer': 0, 'byteOffset': first, 'byteLength': len(data) - first}],
+        'buffers': [{'byteLength': len(data)}]}
+    text = json.dumps(document).encode()
+    text += b' ' * (-len(text) % 4)
+    path.write_bytes(struct.pack('<III', 0x46546C67, 2, 28 + len(text) + len(data)) + struct.pack('<II', len(text), 0x4E4F534A) + text +
+                     struct.pack('<II', len(data), 0x004E4942) + data)
 
 
 class WindowTest(unittest.TestCase):
@@ -242,6 +276,70 @@ class WindowTest(unittest.TestCase):
         self.key('ctrl+q', 'd')
         self.assertEqual(self.studio.wait(20), 0)
         self.assertFalse((self.folder / 'cloud.autosave.marks').exists())
+
+    def test_scene_with_materials(self):
+        write_scene(self.folder / 'balls.glb')
+        self.open('balls.glb')
+        self.keep('10-scene')
+        red, green = (0xE7, 0x27, 0x27), (0x27, 0xCB, 0x27)
+        view = (PANEL + 20, 60, WIDTH - 20, HEIGHT - 60)
+        shot = self.shot()
+        self.assertGreater(shot.like(red, view), 3000)
+        self.assertGreater(shot.like(green, view), 1.3 * shot.like(red, view))  # twice, one of them flatter
+        # G, then a click on what is green: both are marked, and nothing of the red one.
+        spots = [(x, y) for y in range(view[1], view[3], 5) for x in range(view[0], view[2], 5) if shot.like(green, (x - 8, y - 8, x + 8, y + 8)) == 64]
+        self.key('g')
+        self.click(*spots[len(spots) // 2])
+        self.wait(lambda: self.marked('balls.autosave.marks').get(1, 0) > 300, 'the green ones are marked')
+        shot = self.shot()
+        self.assertEqual(shot.like(green, view), 0)
+        self.assertGreater(shot.like(red, view), 3000)
+        self.assertGreater(shot.like(ORANGE, view), 3000)
+        self.keep('11-material')
+        counts = self.marked('balls.autosave.marks')
+        self.assertEqual(counts[0], counts[1])
+        self.key('Return')
+        time.sleep(1)
+        self.key('ctrl+e')
+        self.wait(lambda: (self.folder / 'balls.studio.glb').exists(), 'export')
+        data = (self.folder / 'balls.studio.glb').read_bytes()
+        document = json.loads(data[20:20 + struct.unpack_from('<I', data, 12)[0]])
+        self.assertEqual([m['name'] for m in document['materials']], ['red', 'green'])
+        self.assertIn('VSPLIT_progressive_mesh', document['extensionsUsed'])
+        self.key('ctrl+q', 'd')
+        self.assertEqual(self.studio.wait(20), 0)
+
+    def test_keep_and_keys(self):
+        self.open()
+        middle = (PANEL + (WIDTH - PANEL) // 2, HEIGHT // 2)
+        # Fast and wide, at a coarse level: what is split off from it is marked, too.
+        self.key('Next', 'Next', 'Next', 'Next', 'Next', *['bracketright'] * 6)
+        self.drag([(middle[0] - 60 + 30 * i, middle[1]) for i in range(5)], 'ctrl')
+        self.wait(lambda: self.marked().get(1, 0) > 100, 'a wide stroke')
+        coarse = self.shot()
+        self.key('r')
+        time.sleep(0.5)
+        self.keep('12-refined')
+        self.assertNotEqual(coarse.pixels, self.shot().pixels)
+        weight = lambda: [line.split()[2] for line in (self.folder / 'whale.autosave.marks').read_text().splitlines() if line.startswith('region ')]
+        self.assertEqual(weight(), ['auto'])
+        self.key('k')
+        self.keep('13-searching')
+        self.wait(lambda: weight() != ['auto'], 'a weight is found in the background')
+        self.assertGreater(float(weight()[0]), 0)
+        self.key('a')
+        self.wait(lambda: weight() == ['auto'], 'the automatic weight')
+        # Every key of the help is one that the window lives through.
+        for name in ('F1', 'Escape', 'h', 'h', 'Left', 'Right', 'Prior', 'Home', 'End', 'd', 'd', 'v', 'f', 's', 'w', 'w', 'e', 't', 'c', 'q', 'm', 'n', '1', '2', '9', 'minus', 'equal',
+                     'bracketleft', 'semicolon', 'apostrophe', 'x', 'x', 'y', 'y', 'z', 'z', 'p', 'Escape', 'g', 'Escape', 'u', 'ctrl+z', 'ctrl+y', 'Return', 'Escape', 'ctrl+s', 'ctrl+o'):
+            self.key(name)
+        self.assertIsNone(self.studio.poll())
+        self.assertTrue((self.folder / 'whale.weights.txt').exists())
+        self.key('ctrl+q')
+        time.sleep(0.3)
+        if self.studio.poll() is None:
+            self.key('d')
+        self.assertEqual(self.studio.wait(20), 0)
 
     def test_panel_by_mouse(self):
         self.open()

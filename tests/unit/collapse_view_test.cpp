@@ -3,6 +3,7 @@
 //
 // View-dependent refinement of what the baker makes: closed, of the same kind, and folded nowhere, whatever
 // the camera sees.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
@@ -72,4 +73,40 @@ TEST_CASE("view: closed meshes stay closed and unfolded under a moving camera") 
         }
         REQUIRE(partial > 30);
     }
+}
+
+TEST_CASE("view: the painted half gets most of a triangle budget, closed and unfolded") {
+    const Mesh input = make_torus(64, 48);
+    const auto record = bake::collapse(input, {});
+    REQUIRE(record.ok());
+    const Topology full = topology(input);
+    const std::size_t folds = folded_edges(cut(record->mesh, 0));
+    const auto painted = [](const ViewMesh& mesh) {
+        return std::size_t(
+            std::count_if(mesh.triangles().begin(), mesh.triangles().end(), [&](const Triangle& t) {
+                return mesh.positions()[t[0]].x > 0 && mesh.positions()[t[1]].x > 0 &&
+                       mesh.positions()[t[2]].x > 0;
+            }));
+    };
+    auto plain = ViewMesh::make(record->mesh), marked = ViewMesh::make(record->mesh);
+    REQUIRE((plain.ok() && marked.ok()));
+    std::vector<float> priority;
+    for (const Float3& p : record->mesh.positions) priority.push_back(p.x > 0 ? 1000.0f : 1.0f);
+    REQUIRE(marked->set_priority(priority).ok());
+    const std::size_t budget = input.triangles.size() / 2;
+    for (ViewMesh* mesh : {&*plain, &*marked}) {
+        mesh->rank();
+        REQUIRE(mesh->refine_to(mesh->rank_for_triangles(budget)).settled);
+        REQUIRE(mesh->triangles().size() <= budget);
+        REQUIRE(mesh->triangles().size() + 2 >= budget);
+        const Mesh now = compact(*mesh);
+        const Topology topo = topology(now);
+        REQUIRE(topo.manifold());
+        REQUIRE(topo.boundary_edges == 0);
+        REQUIRE(topo.parts == full.parts);
+        REQUIRE(folded_edges(now) <= folds);
+    }
+    // Not all of it: splits wait for some in the other half.
+    CHECK(double(painted(*marked)) > 1.25 * double(painted(*plain)));
+    CHECK(double(painted(*marked)) > 0.6 * double(budget));
 }

@@ -129,6 +129,60 @@ TEST_CASE("Weights: a painted area keeps clearly more of its vertices") {
         }
 }
 
+TEST_CASE(
+    "Weights: weight 10 keeps half as much again of a marked area, and the rest is as good as without") {
+    // A bumpy torus of as many vertices as the paper's whale, as many of them marked.
+    Mesh mesh = make_torus(69, 38);
+    for (Float3& p : mesh.positions) {
+        const float bump = 1 + 0.03f * std::sin(21 * p.x) * std::cos(17 * p.y) * std::sin(13 * p.z + 1);
+        p = {p.x * bump, p.y * bump, p.z * bump};
+    }
+    const Float3 centre = mesh.positions.front();
+    const auto distance2 = [&](const Float3& p) {
+        return (p.x - centre.x) * (p.x - centre.x) + (p.y - centre.y) * (p.y - centre.y) +
+               (p.z - centre.z) * (p.z - centre.z);
+    };
+    std::vector<float> distances;
+    for (const Float3& p : mesh.positions) distances.push_back(distance2(p));
+    std::nth_element(distances.begin(), distances.begin() + 568, distances.end());
+    const float limit = distances[568];
+    const auto marked = [&](const Float3& p) { return distance2(p) <= limit; };
+    Mesh painted = mesh;
+    std::vector<Float3> rest;
+    for (const Float3& p : mesh.positions) {
+        painted.weights.push_back(marked(p) ? 10.0f : 1.0f);
+        if (!marked(p)) rest.push_back(p);
+    }
+    const double area = double(mesh.positions.size() - rest.size());
+    const ProgressiveMesh with = collapsed(painted).mesh, plain = collapsed(mesh).mesh;
+    const auto rest_triangles = [&](const Mesh& level) {
+        return std::count_if(level.triangles.begin(), level.triangles.end(), [&](const Triangle& t) {
+            return std::none_of(t.begin(), t.end(),
+                                [&](std::uint32_t v) { return marked(level.positions[v]); });
+        });
+    };
+    const auto mean_distance = [&](const Mesh& level) {
+        double sum = 0;
+        for (const Float3& p : rest) sum += distance_to(level, {p});
+        return sum / double(rest.size());
+    };
+    for (const double ratio : {0.6, 0.4}) {
+        const Mesh level =
+            cut(with, level_for_vertices(with, std::uint64_t(ratio * double(mesh.positions.size()))));
+        const double kept =
+            double(std::count_if(level.positions.begin(), level.positions.end(), marked)) / area;
+        CAPTURE(ratio, kept);
+        CHECK(kept >= ratio + 0.2);
+        // The unweighted level with as many triangles in the rest.
+        const auto wanted = rest_triangles(level);
+        std::size_t at = 0;
+        while (at < plain.splits.size() && rest_triangles(cut(plain, at)) < wanted) ++at;
+        const double ours = mean_distance(level), theirs = mean_distance(cut(plain, at));
+        CAPTURE(ours, theirs);
+        CHECK(ours <= 1.05 * theirs);
+    }
+}
+
 TEST_CASE("Weights: a weight of 1 everywhere changes nothing") {
     Mesh plain = make_torus(20, 10);
     Mesh ones = plain;

@@ -48,7 +48,12 @@ std::vector<std::uint32_t> mixed_stream(Coder& coder, std::uint32_t seed, std::s
                 std::array<std::uint32_t, 7> weights{};
                 std::uint32_t sum = 0;
                 for (auto& w : weights) sum += w = 1 + random() % 5000;
-                values.push_back(std::uint32_t(coder.pick(weights, sum, r / 5 % 7)));
+                const std::uint32_t at = coder.point(sum);
+                std::uint32_t value = 0, before = 0;
+                for (; Coder::kDecodes ? at >= before + weights[value] : value < r / 5 % 7; ++value)
+                    before += weights[value];
+                coder.take(before, weights[value], sum);
+                values.push_back(value);
             }
         }
     }

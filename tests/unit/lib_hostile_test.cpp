@@ -107,9 +107,9 @@ void require_refused(const Bytes& bytes, const std::string& what, std::size_t pe
 
 /// One block, weights.
 Bytes good_file(FileInfo& info) {
-    Mesh mesh = make_sphere(10, 7);
+    Mesh mesh = make_sphere(8, 5);
     mesh.weights = some_weights(mesh.positions.size());
-    auto bytes = write_progressive_mesh(naive_record(mesh, 3, 50), {});
+    auto bytes = write_progressive_mesh(naive_record(mesh, 3, 20), {});
     REQUIRE(bytes.ok());
     auto read = read_info(*bytes);
     REQUIRE(read.ok());

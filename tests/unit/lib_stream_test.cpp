@@ -7,6 +7,7 @@
 #include <cstring>
 #include <random>
 
+#include "../../lib/bytes/base_mesh.hpp"
 #include "decorated.hpp"
 #include "pmesh_bytes.hpp"
 #include "vsplit/geomorph.hpp"
@@ -280,6 +281,41 @@ TEST_CASE("A job decodes elsewhere; meanwhile the stream goes on within what it 
     check_level(stream, *whole);
 }
 
+TEST_CASE("A host may decode the base mesh; what it gives is checked") {
+    const Bytes bytes = file_of(test::naive_record(test::make_sphere(30, 20), 5, 300));
+    const auto whole = read_progressive_mesh(bytes);
+    int asked = 0;
+    StreamOptions options;
+    options.decode_base = [&](std::span<const std::byte> draco, std::span<std::int32_t> places,
+                              std::span<std::uint32_t> corners) {
+        ++asked;
+        return decode_draco(draco, places, corners).ok();
+    };
+    Stream stream(options);
+    run(stream, bytes);
+    CHECK(asked == 1);
+    check_level(stream, *whole);
+    const auto read = read_progressive_mesh(bytes, {}, options.decode_base);
+    REQUIRE(read.ok());
+    CHECK(read->positions == whole->positions);
+    CHECK(read_prefix(bytes, {}, options.decode_base).ok());
+    for (const int kind : {0, 1, 2, 3}) {
+        options.decode_base = [kind](std::span<const std::byte> draco, std::span<std::int32_t> places,
+                                     std::span<std::uint32_t> corners) {
+            if (!decode_draco(draco, places, corners).ok()) return false;
+            if (kind == 1) corners[1] = 1'000'000;
+            if (kind == 2) corners[1] = corners[0];
+            if (kind == 3) places[2] = std::numeric_limits<std::int32_t>::min();
+            return kind != 0;
+        };
+        Stream wrong(options);
+        const Status fed = wrong.feed(0, bytes);
+        REQUIRE_FALSE(fed.ok());
+        CHECK(fed.error().code == ErrorCode::kMalformed);
+        CHECK(wrong.broken());
+    }
+}
+
 TEST_CASE("Pending bytes are bounded") {
     const Bytes bytes = file_of(sphere());
     StreamOptions options;
@@ -350,6 +386,86 @@ TEST_CASE("A geomorph starts at one level and ends at the other, finer and coars
             REQUIRE(half[v].x ==
                     Approx(0.5 * (double(morph.from()[v].x) + double(morph.to()[v].x))).margin(1e-6));
     }
+}
+
+/// The places of a triangle's corners.
+std::array<Float3, 3> corners(const Triangle& t, std::span<const Float3> places) {
+    return {places[t[0]], places[t[1]], places[t[2]]};
+}
+
+TEST_CASE("A geomorph does not jump, corner by corner, also when its target changes on the way") {
+    for (const auto& [name, record] : records()) {
+        INFO(name);
+        const Bytes bytes = file_of(record);
+        const auto whole = read_progressive_mesh(bytes);
+        Stream stream;
+        REQUIRE(stream.feed(0, bytes).ok());
+        REQUIRE(stream.update().ok());
+        if (stream.buffers().positions().empty()) continue;
+        std::mt19937 random(4);
+        const auto go = [&](double ratio) {
+            stream.set_target(Target::ratio(ratio));
+            REQUIRE(stream.update()->reached);
+        };
+        const auto copy = [](auto span) { return std::vector(span.begin(), span.end()); };
+        go(0.5);
+        Geomorph morph(stream.buffers());
+        std::vector<Triangle> shown = copy(stream.buffers().triangles());
+        std::vector<Float3> places = copy(stream.buffers().positions());
+        for (int turn = 0; turn < 12; ++turn) {
+            // Sometimes to the end, sometimes it is turned before.
+            const double from_t = turn == 0 ? 0 : turn % 3 == 0 ? 1 : double(random() % 100) / 100;
+            if (turn > 0) {
+                shown = copy(morph.triangles());
+                places = copy(morph.blend(from_t));
+            }
+            go(double(random() % 101) / 100);
+            const std::vector<Triangle> wanted = copy(stream.buffers().triangles());
+            const std::vector<Float3> wanted_places = copy(stream.buffers().positions());
+            morph.turn(stream.buffers(), from_t);
+            const std::vector<Triangle> drawn = copy(morph.triangles());
+            const std::vector<Float3> start = copy(morph.blend(0)), end = copy(morph.blend(1));
+            REQUIRE(drawn.size() >= std::max(shown.size(), wanted.size()));
+            for (std::size_t t = 0; t < drawn.size(); ++t) {
+                const auto a = corners(drawn[t], start), b = corners(drawn[t], end);
+                // What was shown starts where it is, what is wanted ends where it is; all else is no wider
+                // than an edge there. A component that comes back has no place to come from.
+                if (t < shown.size())
+                    REQUIRE(a == corners(shown[t], places));
+                else if (whole->parents[*std::max_element(drawn[t].begin(), drawn[t].end())] != kNoVertex)
+                    REQUIRE((a[0] == a[1] || a[1] == a[2] || a[2] == a[0]));
+                if (t < wanted.size())
+                    REQUIRE(b == corners(wanted[t], wanted_places));
+                else if (whole->parents[*std::max_element(drawn[t].begin(), drawn[t].end())] != kNoVertex)
+                    REQUIRE((b[0] == b[1] || b[1] == b[2] || b[2] == b[0]));
+            }
+        }
+    }
+}
+
+TEST_CASE("A budget of bytes is shared likewise") {
+    const auto one = read_info(file_of(sphere()));
+    const auto two = read_info(file_of(test::naive_record(test::make_torus(40, 30), 3)));
+    const BudgetItem items[] = {{&*one, 100}, {&*two, 25}};
+    std::uint64_t before = 0;
+    for (std::uint64_t budget = 1000; budget < 2 * (one->file_bytes + two->file_bytes); budget += 700) {
+        const auto errors = share_bytes(items, budget);
+        std::uint64_t sum = 0;
+        for (std::size_t i = 0; i < 2; ++i) {
+            const FileInfo& info = *items[i].info;
+            std::uint64_t end = info.data_offset;
+            if (double(info.base_error) > errors[i])
+                for (const BlockInfo& b : info.blocks) {
+                    end = b.offset + b.bytes;
+                    if (double(b.error) <= errors[i]) break;
+                }
+            sum += end;
+        }
+        CHECK(sum <= std::max(budget, one->data_offset + two->data_offset));
+        CHECK(sum >= before);
+        before = sum;
+    }
+    CHECK(before == one->file_bytes + two->file_bytes);
 }
 
 TEST_CASE("A budget is shared so that no mesh is much worse on the screen than another") {

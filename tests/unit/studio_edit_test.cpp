@@ -8,6 +8,7 @@
 #include <set>
 #include <thread>
 
+#include "bindings.hpp"
 #include "document.hpp"
 #include "family.hpp"
 #include "heat.hpp"
@@ -124,7 +125,7 @@ TEST_CASE("Document: paint on a coarse level lands on all that is split off from
     auto d = whale();
     d->go_to(d->level_for_ratio(0.1));
     d->painting().add_region("a", 0);
-    const auto hit = nearest(d->live().positions(), d->live().triangles(), {1.9, 0, 0}, 1);
+    const auto hit = d->nearest({1.9, 0, 0}, 1);
     REQUIRE(hit);
     d->painting().begin();
     d->dab(*hit, {0.5, 1, 1, 0});
@@ -142,7 +143,9 @@ TEST_CASE("Document: paint on a coarse level lands on all that is split off from
     REQUIRE(here > 0);
     REQUIRE(later > here);
     // In place: all that is marked is there, and the rest is as it was.
-    const Mesh refined = d->refined_in_place();
+    const Result<Mesh> made = d->refined_in_place();
+    REQUIRE(made.ok());
+    const Mesh& refined = *made;
     std::set<std::uint32_t> used;
     for (const Triangle& t : refined.triangles) used.insert(t.begin(), t.end());
     std::size_t shown = 0;
@@ -164,7 +167,7 @@ TEST_CASE("Document: paint on a coarse level lands on all that is split off from
 TEST_CASE("Document: mirrored dabs, erasing, saving and loading") {
     auto d = whale();
     d->painting().add_region("a", 0);
-    const auto hit = nearest(d->live().positions(), d->live().triangles(), {0.5, 0, 0.5}, 1);
+    const auto hit = d->nearest({0.5, 0, 0.5}, 1);
     REQUIRE(hit);
     Brush brush{0.3, 1, 1, 4};
     d->painting().begin();
@@ -217,22 +220,123 @@ TEST_CASE("Rebake: estimated errors first, then measured ones; and it stops") {
     auto d = whale();
     Rebake rebake;
     REQUIRE(!rebake.take());
-    rebake.start(d->painted(), d->options());
-    const auto wait = [&](auto&& done) {
-        for (int i = 0; i < 6000 && !done(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    };
-    std::optional<Result<bake::CollapseResult>> last;
-    wait([&] {
+    start_rebake(rebake, d->painted(), d->options());
+    std::optional<Rebaked> last;
+    for (int i = 0; i < 6000 && !(last && last->last); ++i) {
         if (auto result = rebake.take()) last = std::move(result);
-        return !rebake.running() && last;
-    });
-    if (auto result = rebake.take()) last = std::move(result);
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
     REQUIRE(last);
-    REQUIRE(last->ok());
+    REQUIRE(last->last);
+    REQUIRE(last->result.ok());
     const auto straight = bake::collapse(d->painted(), d->options());
-    REQUIRE(error_at((*last)->mesh, 0) == error_at(straight->mesh, 0));
-    rebake.start(d->painted(), d->options());
+    REQUIRE(error_at(last->result->mesh, 0) == error_at(straight->mesh, 0));
+    start_rebake(rebake, d->painted(), d->options());
     rebake.cancel();
     REQUIRE(!rebake.running());
     REQUIRE(!rebake.take());
+}
+
+TEST_CASE("A weight is searched in the background, and found as find_weights() does") {
+    auto d = whale();
+    bake::Marks marks = bake::no_marks(d->painting().vertices());
+    marks.regions.push_back({"head", {}, 1});
+    for (std::size_t v = 0; v < marks.region.size(); ++v)
+        marks.region[v] = d->source().mesh.positions[v].x > 0.8f;
+    const bake::Keep wish{"head", 0.9, 0.4};
+    WeightSearch search;
+    start_search(search, d->source().mesh, marks, wish, d->options());
+    std::optional<Search> found;
+    double most = 0;
+    for (int i = 0; i < 60000 && !found; ++i) {
+        found = search.take();
+        REQUIRE(search.progress() >= 0);
+        most = std::max(most, search.progress());
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    REQUIRE(found);
+    REQUIRE(found->found.ok());
+    REQUIRE(most > 0);
+    REQUIRE(most <= 1);
+    const auto straight = bake::find_weights(d->source().mesh, marks, {&wish, 1}, d->options());
+    REQUIRE(straight->front().weight == found->found->front().weight);
+    start_search(search, d->source().mesh, marks, wish, d->options());
+    search.cancel();
+    REQUIRE(!search.take());
+}
+
+TEST_CASE("Rays and the search tree agree with looking at every triangle; closed surfaces are told apart") {
+    auto d = whale();
+    const Mesh& mesh = d->source().mesh;
+    const auto camera = camera_for(d->box(), "iso", 300, 200);
+    int hits = 0;
+    for (int y = 0; y < 200; y += 7)
+        for (int x = 0; x < 300; x += 5) {
+            const Ray ray = ray_through(*camera, x, y);
+            const auto one = d->pick(ray);
+            const auto all = pick(d->live().positions(), d->live().triangles(), ray);
+            REQUIRE(one.has_value() == all.has_value());
+            if (!one) continue;
+            ++hits;
+            REQUIRE(one->triangle == all->triangle);
+            REQUIRE(one->distance == all->distance);
+        }
+    REQUIRE(hits > 200);
+    REQUIRE(d->closed());
+    Mesh open = mesh;
+    open.triangles.pop_back();
+    REQUIRE(!closed(open.positions, open.triangles));
+    Mesh inside_out = mesh;
+    for (Triangle& t : inside_out.triangles) std::swap(t[0], t[1]);
+    REQUIRE(!closed(inside_out.positions, inside_out.triangles));
+}
+
+TEST_CASE("What a dab changes is what is drawn again") {
+    auto d = whale();
+    d->take_repainted();
+    REQUIRE(d->take_repainted().empty());
+    d->painting().add_region("a", 1);
+    const auto hit = d->nearest({1.9, 0, 0}, 1);
+    REQUIRE(hit);
+    d->painting().begin();
+    d->dab(*hit, {0.2, 1, 1, 0});
+    d->painting().end();
+    const std::vector<Triangle> again = d->take_repainted();
+    std::set<Triangle> expected;
+    for (const Triangle& t : d->live().triangles())
+        for (const std::uint32_t v : t)
+            if (d->painting().marks().region[d->origin(v)] == 1) expected.insert(t);
+    REQUIRE(std::set<Triangle>(again.begin(), again.end()) == expected);
+    REQUIRE(again.size() == expected.size());
+    REQUIRE(!again.empty());
+}
+
+TEST_CASE("The help tells every key and all that the mouse does, and no key does two things") {
+    const std::string help = help_text();
+    std::set<std::string_view> keys;
+    for (const Binding& binding : bindings()) {
+        CAPTURE(binding.key);
+        REQUIRE(keys.insert(binding.key).second);
+        REQUIRE(binding.action != kNothing);
+        REQUIRE(action_of(binding.key) == binding.action);
+        REQUIRE(help.find(std::string(binding.shown)) != help.npos);
+        REQUIRE(help.find(std::string(binding.what)) != help.npos);
+        // A letter is shown as it is printed on the key.
+        if (binding.key.size() == 1 && std::isalpha(static_cast<unsigned char>(binding.key[0])))
+            REQUIRE(binding.shown.find(char(std::toupper(binding.key[0]))) != binding.shown.npos);
+    }
+    for (const Gesture& gesture : gestures()) {
+        REQUIRE(help.find(std::string(gesture.how)) != help.npos);
+        REQUIRE(help.find(std::string(gesture.what)) != help.npos);
+    }
+    // All that the panel does but its sliders has a key.
+    const std::set<int> sliders{kRatio,     kError, kRightRatio, kKeepShare,
+                                kKeepRatio, kSize,  kStrength,   kSharpDegrees};
+    std::set<int> actions;
+    for (const Binding& binding : bindings()) actions.insert(binding.action);
+    for (int action = kNothing + 1; action <= kClose; ++action) {
+        CAPTURE(action);
+        REQUIRE((actions.contains(action) || sliders.contains(action)));
+    }
+    REQUIRE(!action_of("F12"));
 }

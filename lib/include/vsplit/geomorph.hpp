@@ -29,8 +29,9 @@ class Geomorph {
   public:
     explicit Geomorph(const LiveBuffers& from);
 
-    /// The level it is going to. Same mesh, whichever level.
-    void turn(const LiveBuffers& to);
+    /// The level it is going to. Same mesh, whichever level. Again before it is over: from where the places
+    /// are at `t` of the way before, so that a target that changes is no jump either.
+    void turn(const LiveBuffers& to, double t = 0);
 
     /// What to draw while it lasts.
     std::span<const Triangle> triangles() const { return triangles_; }
@@ -41,7 +42,7 @@ class Geomorph {
     std::span<const Float3> blend(double t);
 
   private:
-    std::size_t level_;
+    std::size_t level_;  ///< Of the triangles drawn.
     std::vector<Float3> from_, to_, mixed_;
     std::vector<Triangle> triangles_;
 };
@@ -56,5 +57,8 @@ struct BudgetItem {
 /// the error, in each object's units, to hand to Target::error(). A mesh that is not seen gets its base mesh.
 /// Where even all base meshes are too many, each gets that. Linear in the tables' length, times about 60.
 std::vector<double> share_triangles(std::span<const BudgetItem> items, std::uint64_t triangles);
+
+/// The same for bytes that are fetched: of each file's front and the blocks that its error needs.
+std::vector<double> share_bytes(std::span<const BudgetItem> items, std::uint64_t bytes);
 
 }  // namespace vsplit

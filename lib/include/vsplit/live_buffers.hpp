@@ -5,6 +5,7 @@
 // and coarsened in place, with the ranges to send to the GPU. Holds its own compact copy of the splits.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -22,6 +23,14 @@ struct DirtyRanges {
     std::uint32_t triangles_begin = 0, triangles_end = 0;  ///< Corners; or born.
 };
 
+/// Where places are origin + step * n for whole numbers n along each axis: FileInfo::lattice_origin and
+/// lattice_step, unless the file is lossless. It saves memory; places that are not on it cost no more than
+/// that.
+struct PlaceGrid {
+    std::array<double, 3> origin{};
+    double step = 0;  ///< 0: none.
+};
+
 /// A vertex or triangle that dies keeps its number and comes back with the same values, so that buffers on
 /// the GPU hold a prefix that is drawn and a tail that is not. Refining, then coarsening by the same splits
 /// restores every byte. Contents must be sound (progressive_mesh_fault() is null): not checked again.
@@ -33,7 +42,8 @@ class LiveBuffers {
     /// Starts anew with the base mesh at level 0, and appends the splits that `mesh` has. The totals are
     /// those of the whole mesh: memory for them is allocated here, and never again but for unusual splits.
     void begin(const ProgressiveMesh& mesh, std::uint32_t vertices, std::uint32_t triangles,
-               std::uint32_t splits, std::uint32_t corner_changes, std::uint32_t moves);
+               std::uint32_t splits, std::uint32_t corner_changes, std::uint32_t moves,
+               const PlaceGrid& grid = {});
 
     /// Appends mesh.splits from available() on; the level stays. `mesh` is what it was before and more, and
     /// is at level 0 as BlockDecoder::mesh() is. Splits that go beyond the totals are not taken.
@@ -96,6 +106,10 @@ class LiveBuffers {
     /// unless they are tracked.
     void take_dirty_runs(std::vector<ElementRange>& vertices, std::vector<ElementRange>& triangles);
 
+    /// The splits known as they were appended, but without the attributes' names and meanings. Walks to level
+    /// 0 and back: all ends as it was.
+    ProgressiveMesh record();
+
     /// Bytes allocated.
     std::size_t memory() const;
 
@@ -119,8 +133,8 @@ class LiveBuffers {
     };
     struct Values {
         std::uint32_t components = 1;
-        std::vector<float> alive;  ///< Of the vertices.
-        std::vector<float> moved;  ///< Exchanged with those of the vertices moved.
+        std::vector<float> alive;          ///< Of the vertices.
+        std::vector<std::uint32_t> moved;  ///< The bits in which they differ before and after each move.
     };
 
     void pass(Ends& ends, std::size_t split) const;
@@ -129,12 +143,11 @@ class LiveBuffers {
     std::size_t last_level(std::uint64_t limit, Count count) const;
     void encode(const ProgressiveMesh& mesh, std::size_t split);
     void store_corner(std::uint32_t corner);
-    template <unsigned kBytes>
+    void append_moves(const ProgressiveMesh& mesh);
+    template <bool kForward, unsigned kBytes>
     void patch(std::size_t level, const Ends& to);
-    template <unsigned kBytes>
-    void unpatch(std::size_t level, const Ends& to);
     template <bool kForward>
-    void move(std::size_t level, const Ends& to);
+    void move(std::size_t from_level, const Ends& from, std::size_t to_level, const Ends& to);
     template <bool kForward>
     void exchange(std::span<const std::uint32_t> vertices, std::size_t first_move);
     void mark_triangles(std::size_t from_level, const Ends& from, std::size_t to_level, const Ends& to);
@@ -157,8 +170,13 @@ class LiveBuffers {
 
     std::vector<std::uint8_t> codes_;    ///< One per split.
     std::vector<std::uint8_t> corners_;  ///< Changed ones, corner_bytes_ each, and a byte that may be read.
-    std::vector<Float3> moved_positions_;
-    std::vector<float> moved_weights_;
+    PlaceGrid grid_;
+    bool packed_ = false;  ///< All places are on the grid, and no step is long: steps_, not moved_positions_.
+    std::vector<std::array<std::int16_t, 3>> steps_;
+    std::vector<std::array<std::uint32_t, 3>> moved_positions_;  ///< As Values::moved.
+    std::vector<std::uint32_t> moved_weights_;                   ///< Likewise.
+    std::size_t moves_stored_ = 0;
+    std::vector<std::uint32_t> last_moves_;  ///< Of each vertex, while there are splits to come.
     std::vector<Special> specials_;
     std::vector<std::uint32_t> special_corners_;  ///< The vertex of each of their corner changes.
     std::vector<std::uint32_t> special_moves_;    ///< The vertex of each of their moves.

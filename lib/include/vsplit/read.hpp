@@ -7,6 +7,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -21,6 +22,14 @@ namespace vsplit {
 struct Limits {
     std::uint64_t max_bytes = std::uint64_t{1} << 30;  ///< Memory for all that is returned, 1 GiB.
 };
+
+/// A host's decoder of base meshes in place of Draco; needed where the library was built without it
+/// (VSPLIT_WITH_DRACO=OFF). Asked for the mesh in `bytes`, which is Draco's: the three whole numbers of each
+/// point's position attribute and the three points of each face, in the order in which Draco gives them;
+/// places.size() / 3 points and corners.size() / 3 faces are there, or the bytes are malformed. False if it
+/// cannot. `bytes` are hostile; what it writes is checked. Empty: Draco.
+using BaseMeshDecoder = std::function<bool(std::span<const std::byte> bytes, std::span<std::int32_t> places,
+                                           std::span<std::uint32_t> corners)>;
 
 /// One block of splits, as the table at the front of the file announces it.
 struct BlockInfo {
@@ -79,18 +88,21 @@ struct FileInfo {
 Result<FileInfo> read_info(std::span<const std::byte> bytes, const Limits& limits = {});
 
 /// Reads a whole file. The result is sound: progressive_mesh_fault() is null.
-Result<ProgressiveMesh> read_progressive_mesh(std::span<const std::byte> bytes, const Limits& limits = {});
+Result<ProgressiveMesh> read_progressive_mesh(std::span<const std::byte> bytes, const Limits& limits = {},
+                                              const BaseMeshDecoder& decode_base = {});
 
 /// Reads what a beginning of a file holds: table and base mesh at least, and all blocks that are whole. What
 /// is left of a block is ignored. The result is sound, and its error_at() the end is 0: ask the table for the
 /// error.
-Result<ProgressiveMesh> read_prefix(std::span<const std::byte> bytes, const Limits& limits = {});
+Result<ProgressiveMesh> read_prefix(std::span<const std::byte> bytes, const Limits& limits = {},
+                                    const BaseMeshDecoder& decode_base = {});
 
 /// Decodes a file block by block, in order, as its bytes arrive. Memory as announced by read_info().
 class BlockDecoder {
   public:
     /// `front` is the file's beginning up to the end of table and base mesh (data_offset), or more of it.
-    static Result<BlockDecoder> begin(std::span<const std::byte> front, const Limits& limits = {});
+    static Result<BlockDecoder> begin(std::span<const std::byte> front, const Limits& limits = {},
+                                      const BaseMeshDecoder& decode_base = {});
     BlockDecoder(BlockDecoder&&) noexcept;
     BlockDecoder& operator=(BlockDecoder&&) noexcept;
     ~BlockDecoder();

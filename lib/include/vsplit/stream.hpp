@@ -13,9 +13,11 @@
 #include <span>
 #include <vector>
 
+#include "vsplit/camera.hpp"
 #include "vsplit/live_buffers.hpp"
 #include "vsplit/read.hpp"
 #include "vsplit/result.hpp"
+#include "vsplit/view_mesh.hpp"
 
 namespace vsplit {
 
@@ -44,30 +46,14 @@ struct Target {
     static Target pixels(double distance) { return {Kind::kPixels, distance}; }
 };
 
-/// A perspective camera, in the world's units.
-struct Camera {
-    Float3 eye;
-    double vertical_fov = 0.8;   ///< Radians, above 0 and below pi.
-    double viewport_height = 1;  ///< Pixels.
-};
-
-/// The geometric error, in the object's units, that spans at most `pixels` on the screen wherever on the
-/// object it is. `bounds_min` and `bounds_max` are the object's box (FileInfo's); `to_world` is its
-/// transform, column by column; its largest stretch counts. 0 if the camera is within the object's bounding
-/// sphere. (Hoppe, Progressive Meshes, SIGGRAPH 1996, section 5: error over distance.)
-double error_of_pixels(const Camera& camera, const Float3& bounds_min, const Float3& bounds_max,
-                       std::span<const float, 16> to_world, double pixels);
-
-/// The pixels that an error spans at most, the inverse of error_of_pixels(); infinite within the sphere.
-double pixels_of_error(const Camera& camera, const Float3& bounds_min, const Float3& bounds_max,
-                       std::span<const float, 16> to_world, double error);
-
 /// Bounds of one call of Stream::update().
 struct Budget {
     std::size_t max_splits = ~std::size_t{0};  ///< Splits applied or undone at most.
     std::size_t max_blocks = ~std::size_t{0};  ///< Blocks decoded at most.
     /// Asked between blocks and every few thousand splits; true ends the call. May be empty.
     std::function<bool()> out_of_time{};
+    /// Selective refinement: places looked at, at most; the next call goes on where this one ended.
+    std::size_t max_visits = ~std::size_t{0};
 };
 
 /// What update() came to.
@@ -87,6 +73,7 @@ struct StreamOptions {
     /// Bytes of blocks that have come but are not decoded yet, at most; what would exceed it is dropped, and
     /// wanted again. At least one block is held.
     std::uint64_t max_pending_bytes = std::uint64_t{16} << 20;
+    BaseMeshDecoder decode_base{};  ///< The host's, in place of Draco.
 };
 
 /// One block's decoding as work that any thread may do: it shares nothing with the stream it came from.
@@ -164,11 +151,30 @@ class Stream {
     /// within what is decoded.
     void jump_to_target();
 
+    // Selective refinement: finer here, coarser there.
+
+    /// From now on, or no longer, update() refines selective() and leaves buffers() where they are: where
+    /// set_view() looks, and without a view towards target() in the order of priorities (ViewMesh::rank()).
+    /// May be called at any time; before ready() it is done when that comes. It takes a copy of all splits
+    /// decoded and plans them (about two seconds for a million triangles at once, less a block while they
+    /// arrive) and keeps about eight times the indexed triangle list beside buffers(). Errors: kLimit, as
+    /// ViewMesh::make(): it stays off. If splits that come later are too many, update() gives that Error, and
+    /// it is off from then on.
+    Status set_selective(bool on);
+    /// Null if it is off, and before ready(). Priorities are set here. Its vertex arrays stay where they are.
+    const ViewMesh* selective() const;
+    ViewMesh* selective();
+    /// What the camera sees is refined, the rest kept coarse. wants() names what the nearest place of the
+    /// object's box may need, and nothing while the box is out of view. target() does not count meanwhile.
+    void set_view(const CameraView& view);
+    void clear_view();
+
     /// Geometric error of the level that is there, in the object's units; that of the base mesh before
     /// ready().
     float level_error() const;
 
-    /// What to draw. Empty before ready(). Pointers stay the same once ready().
+    /// What to draw, unless selective() is not null. Empty before ready(). Pointers stay the same once
+    /// ready().
     const LiveBuffers& buffers() const;
     LiveBuffers& buffers();
 

@@ -27,6 +27,7 @@ extern "C" {
 #endif
 
 typedef struct vsplit_stream vsplit_stream;
+typedef struct vsplit_job vsplit_job;
 
 /* What came of a call. The numbers are stable. */
 typedef enum vsplit_status {
@@ -58,6 +59,13 @@ typedef struct vsplit_options {
     uint64_t max_pending_bytes; /* of blocks that have come and are not decoded, 16 MiB */
     int tries;                  /* failures of one block that end the stream, 3 */
     double hysteresis;          /* of VSPLIT_TARGET_PIXELS, 0.25; negative: none */
+    /* The host's decoder of base meshes in place of Draco; needed if the library was built without
+     * (VSPLIT_WITH_DRACO=OFF). Writes the position (three whole numbers) of each of `points` points and the
+     * points of each of `faces` faces of the Draco mesh in `bytes`, in Draco's order; returns 0 if it cannot,
+     * or the counts are others. `bytes` may be hostile; what it writes is checked. */
+    int (*decode_base)(void* user, const void* bytes, size_t size, uint32_t points, uint32_t faces,
+                       int32_t* positions, uint32_t* corners);
+    void* user; /* the first argument of decode_base */
 } vsplit_options;
 
 typedef struct vsplit_updated {
@@ -88,6 +96,32 @@ typedef struct vsplit_totals {
     int has_weights, has_groups;
 } vsplit_totals;
 
+/* Bounds of vsplit_stream_update_within(); zeros mean none. */
+typedef struct vsplit_budget {
+    size_t max_splits, max_blocks;
+    size_t max_visits;         /* selective: places looked at; the next call goes on */
+    int (*out_of_time)(void*); /* asked between blocks and every few thousand splits; not 0 ends the call */
+    void* user;                /* its argument */
+} vsplit_budget;
+
+/* Half-open. */
+typedef struct vsplit_span {
+    uint32_t begin, end;
+} vsplit_span;
+
+/* What a perspective camera sees of the object, in world units; zeroed but for the matrix, it is nothing. */
+typedef struct vsplit_view {
+    float eye[3];
+    float vertical_fov;    /* radians, above 0 and below pi */
+    float viewport_height; /* pixels */
+    float pixels;          /* the error on the screen that is not worth a split; 0: all in view is full */
+    float to_world[16];    /* the object's transform, column by column */
+    int has_clip;          /* 0: everything is in view */
+    float to_clip[16];     /* world to clip space (projection times view), column by column */
+    float hysteresis;      /* a split is undone below this share of `pixels`; 0: the default, 0.8 */
+    float facing;          /* how much of an error counts where the surface faces the eye; 0: 0.3 */
+} vsplit_view;
+
 /* "0.1.0" */
 const char* vsplit_version(void);
 
@@ -110,6 +144,18 @@ vsplit_status vsplit_stream_set_file_size(vsplit_stream* stream, uint64_t bytes)
  * `out` may be NULL. */
 vsplit_status vsplit_stream_update(vsplit_stream* stream, size_t max_splits, size_t max_blocks,
                                    vsplit_updated* out);
+/* The same with more bounds; `budget` and `out` may be NULL. */
+vsplit_status vsplit_stream_update_within(vsplit_stream* stream, const vsplit_budget* budget,
+                                          vsplit_updated* out);
+/* Decoding for a worker thread: takes the next block that is whole out of the stream, or NULL if there is
+ * none to do (or no memory). Until it is given back, the stream goes on within what it has. A job shares
+ * nothing with its stream: vsplit_job_run(), once, on any thread, while the stream is used on another.
+ * vsplit_stream_finish_job() puts its splits in and frees it. vsplit_job_free(): for a stream that is gone.
+ */
+vsplit_job* vsplit_stream_take_job(vsplit_stream* stream);
+void vsplit_job_run(vsplit_job* job);
+vsplit_status vsplit_stream_finish_job(vsplit_stream* stream, vsplit_job* job);
+void vsplit_job_free(vsplit_job* job);
 /* Goes to the target's level at once, within what is decoded. */
 void vsplit_stream_jump(vsplit_stream* stream);
 
@@ -120,6 +166,22 @@ int vsplit_stream_complete(const vsplit_stream* stream); /* all blocks are decod
 const char* vsplit_stream_error(const vsplit_stream* stream);
 uint64_t vsplit_stream_bytes_received(const vsplit_stream* stream);
 void vsplit_stream_totals(const vsplit_stream* stream, vsplit_totals* out);
+
+/* Selective refinement, on (1) or off (0), at any time: finer where a view looks, or, without one, in the
+ * order of priorities towards the target. What the functions below give is then the selective mesh: all
+ * vertices that have come, in the file's order, whichever are in use, and a packed list of triangles, whose
+ * order is its own. Pointers change when it is turned on and off, and not in between. VSPLIT_ERROR_LIMIT:
+ * this mesh cannot be refined so; it stays off. */
+vsplit_status vsplit_stream_set_selective(vsplit_stream* stream, int on);
+int vsplit_stream_selective(const vsplit_stream* stream);
+/* NULL: none any more. Copied. */
+void vsplit_stream_set_view(vsplit_stream* stream, const vsplit_view* view);
+/* By how much errors count more than elsewhere: one for each vertex from 0 on, finite and not negative, of as
+ * many as wanted; later ones take their parent's. NULL: all alike. VSPLIT_ERROR_ARGUMENT: not selective yet,
+ * more than there are vertices, or no such numbers. */
+vsplit_status vsplit_stream_set_priority(vsplit_stream* stream, const float* of_vertices, uint32_t count);
+/* The file's painted weights are the priorities. VSPLIT_ERROR_ARGUMENT: not selective yet. */
+vsplit_status vsplit_stream_use_weights(vsplit_stream* stream);
 
 /* What to draw now. Counts change with each update; pointers stay the same once ready, with room for the full
  * mesh behind them. */
@@ -132,10 +194,14 @@ const uint32_t* vsplit_stream_groups(const vsplit_stream* stream);    /* 1 a tri
 const uint32_t* vsplit_stream_parents(const vsplit_stream* stream);   /* 1 a vertex; UINT32_MAX: none */
 /* Returns 0 if there is no such attribute. */
 int vsplit_stream_attribute(const vsplit_stream* stream, uint32_t index, vsplit_attribute* out);
-/* Geometric error of the level that is there, in the object's units. */
+/* Geometric error of the level that is there, in the object's units; selective: of the level that it left. */
 float vsplit_stream_level_error(const vsplit_stream* stream);
-/* What changed since the last call, to be uploaded. */
+/* What changed since the last call, to be uploaded. Selective: everything once it is turned on or off. */
 vsplit_dirty vsplit_stream_take_dirty(vsplit_stream* stream);
+/* The same as several ranges: writes at most `capacity` (at least 1) of each kind, ascending, the last of
+ * which holds all that are left, and how many there are. */
+void vsplit_stream_take_dirty_spans(vsplit_stream* stream, size_t capacity, vsplit_span* vertices,
+                                    size_t* vertex_spans, vsplit_span* triangles, size_t* triangle_spans);
 
 /* Copies corners of `count` triangles from `first` as indices of 2 or 4 bytes. VSPLIT_ERROR_ARGUMENT: beyond
  * the triangles that are there, another size, or a vertex that 2 bytes do not name (65535 restarts a strip

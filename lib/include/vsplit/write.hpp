@@ -25,7 +25,8 @@ struct WriteOptions {
 };
 
 /// The file's bytes, the same for the same mesh and options. Painted weights, joints and attributes of no
-/// known meaning are kept exactly. Errors: kArgument for an unsound mesh or options out of range.
+/// known meaning are kept exactly. Errors: kArgument for an unsound mesh or options out of range;
+/// kUnsupported from a library built without Draco.
 Result<std::vector<std::byte>> write_progressive_mesh(const ProgressiveMesh& mesh,
                                                       const WriteOptions& options = {});
 

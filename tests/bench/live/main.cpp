@@ -64,7 +64,8 @@ Result<double> feed(std::span<const std::byte> file, LiveBuffers& live, double& 
     auto decoder = BlockDecoder::begin(file);
     if (!decoder) return decoder.error();
     const FileInfo& info = decoder->info();
-    live.begin(decoder->mesh(), info.vertices, info.triangles, info.splits, info.corner_changes, info.moves);
+    live.begin(decoder->mesh(), info.vertices, info.triangles, info.splits, info.corner_changes, info.moves,
+               info.lossless ? PlaceGrid{} : PlaceGrid{info.lattice_origin, info.lattice_step});
     for (const BlockInfo& block : info.blocks) {
         const Status status = decoder->decode(file.subspan(block.offset, block.bytes));
         if (!status) return status.error();
@@ -159,12 +160,13 @@ Result<Figures> measure(std::span<const std::byte> file) {
 
 int main(int argc, char** argv) {
     std::vector<std::string> files;
-    std::string markdown, keep;
+    std::string markdown, keep, library;
     CLI::App app("Speed and memory of the live buffers, on one thread.", "vsplit_bench_live");
     app.add_option("file", files,
                    "Meshes, or .pmesh files as they are (default: nefertiti and igea-1m of the corpus)");
     app.add_option("--markdown", markdown, "Write the page to this file too");
     app.add_option("--keep", keep, "Folder for what was baked, to measure it again without baking");
+    app.add_option("--library", library, "The shared library without Draco, stripped, to report its size");
     CLI11_PARSE(app, argc, argv);
     const std::string corpus = VSPLIT_CORPUS;
     if (files.empty()) files = {corpus + "/meshes/nefertiti.obj", corpus + "/meshes/igea-1m.ply"};
@@ -213,6 +215,19 @@ int main(int argc, char** argv) {
             if (!written) fmt::print(stderr, "{}: {}\n", kept, written.error().describe());
         }
     }
+    std::string size;
+    if (!library.empty()) {
+        const auto bytes = bake::read_file(library);
+        if (!bytes) {
+            fmt::print(stderr, "{}: {}\n", library, bytes.error().describe());
+            return 3;
+        }
+        size = fmt::format(
+            "\nThe shared library, built as tests/consumer/no_draco builds it (Release, no Draco, no "
+            "exceptions, "
+            "no RTTI) and stripped: {} bytes, {:.0f} KiB; bar 500, goal 200.\n",
+            bytes->size(), double(bytes->size()) / 1024);
+    }
     const bench::Machine machine = bench::describe_machine();
     const std::string page = fmt::format(
         "# The live buffers, measured\n\n"
@@ -231,8 +246,9 @@ int main(int argc, char** argv) {
         "triangles | "
         "1.7 (1.5) | 0.8 (2) | |\n"
         "| bar (goal) | optimal, normals | | | | 15 (40) | 15 (40) | 5 (1) at 1 M triangles | 5 (1) at 1 M "
-        "triangles | - | 0.8 (2) | |\n{}",
-        command, machine.cpu, machine.compiler, machine.date, machine.commit, kRuns, kCall, kJumps, rows);
+        "triangles | 1.7 (1.5) | 0.8 (2) | |\n{}{}",
+        command, machine.cpu, machine.compiler, machine.date, machine.commit, kRuns, kCall, kJumps, rows,
+        size);
     fmt::print("{}", page);
     if (!markdown.empty()) {
         const Status written = bake::write_file(markdown, std::as_bytes(std::span(page)), true);

@@ -3,6 +3,7 @@
 #include "child.hpp"
 
 #include <malloc.h>
+#include <oneapi/tbb/global_control.h>
 #include <poll.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -63,6 +64,9 @@ Usage Meter::stop() const {
 }
 
 Result<Json> in_child(const std::function<Result<Json>()>& work, double limit_seconds) {
+    // Threads do not survive a fork, and TBB would not start them again: the child begins without any.
+    tbb::task_scheduler_handle scheduler{tbb::attach{}};
+    if (!tbb::finalize(scheduler, std::nothrow)) return failure("TBB's threads did not end");
     std::fflush(nullptr);
     malloc_trim(0);  // What this process freed is not the child's.
     int ends[2];

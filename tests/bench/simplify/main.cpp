@@ -37,6 +37,7 @@ std::string parts_of(const Report& report) {
     add(!report.quality.empty(), "quality");
     add(report.speed.has_value(), "speed");
     add(!report.calibration.empty(), "calibration");
+    add(!report.weights.empty(), "weights");
     return parts;
 }
 
@@ -53,6 +54,7 @@ std::string take_measured(const std::string& path, Report& report) {
             return "of other models or samples";
         json.at("quality").get_to(report.quality);
         json.at("calibration").get_to(report.calibration);
+        if (json.contains("weights")) json["weights"].get_to(report.weights);
         if (json.contains("speed")) report.speed = json["speed"].get<Speed>();
         if (machine.commit != report.machine.commit)
             report.machine.commit += fmt::format("; {}: {}", machine.commit, parts_of(report));
@@ -85,7 +87,7 @@ int main(int argc, char** argv) {
     app.add_option("--json", options.json, "Write all figures to this file");
     app.add_option("--markdown", options.markdown, "Write the page to this file too");
     app.add_option("--only", options.only, "Parts to measure; may be repeated")
-        ->check(CLI::IsMember({"quality", "speed", "calibration"}));
+        ->check(CLI::IsMember({"quality", "speed", "calibration", "weights"}));
     app.add_option("--resume", options.resume,
                    "Take the parts that a run with --json measured from that file, measure the others: the "
                    "machine need be quiet for speed alone")
@@ -136,6 +138,8 @@ int main(int argc, char** argv) {
     if (chosen("calibration") && report.calibration.empty())
         for (const Model& model : models.quality)
             report.calibration.push_back(measure_calibration(model, ruler));
+    if (chosen("weights") && report.weights.empty())
+        for (const Model& model : models.quality) report.weights.push_back(measure_weights(model, ruler));
 
     const std::string page = to_markdown(report);
     fmt::print("{}", page);

@@ -11,6 +11,7 @@
 #include "machine.hpp"
 #include "quality.hpp"
 #include "speed.hpp"
+#include "weights.hpp"
 
 namespace vsplit::bench {
 
@@ -23,6 +24,7 @@ struct Report {
     std::vector<ModelQuality> quality;  ///< Empty if not asked for.
     std::optional<Speed> speed;
     std::vector<Calibration> calibration;  ///< Empty if not asked for.
+    std::vector<WeightRun> weights;        ///< Empty if not asked for.
 };
 
 /// A page in Markdown.

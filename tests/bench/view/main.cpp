@@ -25,6 +25,7 @@ namespace {
 
 constexpr std::size_t kActive = 100'000;  // triangles
 constexpr int kFrames = 360;
+constexpr std::size_t kAll = ~std::size_t{0}, kFew = 15'000;  // places looked at in a frame
 
 double cpu_seconds() {
     return double(std::clock()) / CLOCKS_PER_SEC;
@@ -80,7 +81,7 @@ void settle(ViewMesh& mesh, const View& view) {
     }
 }
 
-void row(const std::string& name, ViewMesh& mesh, double made, float distance) {
+void row(const std::string& name, ViewMesh& mesh, double made, float distance, std::size_t visits) {
     Orbit orbit;
     Float3 low = mesh.positions()[0], high = low;
     for (const Float3& p : mesh.positions()) {
@@ -105,7 +106,7 @@ void row(const std::string& name, ViewMesh& mesh, double made, float distance) {
     for (int frame = 1; frame <= kFrames; ++frame) {
         const View view = orbit.at(frame, pixels);
         const double start = cpu_seconds();
-        const ViewUpdated done = mesh.update(view);
+        const ViewUpdated done = mesh.update(view, {.max_visits = visits});
         const ViewMesh::Dirty dirty = mesh.take_dirty();
         frames.push_back(1e3 * (cpu_seconds() - start));
         active += mesh.triangles().size();
@@ -116,10 +117,11 @@ void row(const std::string& name, ViewMesh& mesh, double made, float distance) {
     double sum = 0;
     for (const double ms : frames) sum += ms;
     std::sort(frames.begin(), frames.end());
-    fmt::print("| {} | {:.2f} | {:.2f} | {} | {} | {} | {} | {:.2f} | {:.2f} | {:.2f} | {:.0f} | {:.2f} |\n",
-               name, distance, pixels, active / kFrames, splits / kFrames, most_splits, sent / kFrames / 1024,
-               sum / kFrames, frames[kFrames * 95 / 100], frames.back(), 1e3 * made,
-               double(mesh.memory()) / (1 << 20));
+    fmt::print(
+        "| {} | {:.2f} | {} | {:.2f} | {} | {} | {} | {} | {:.2f} | {:.2f} | {:.2f} | {:.0f} | {:.2f} |\n",
+        name, distance, visits == kAll ? "all" : std::to_string(visits), pixels, active / kFrames,
+        splits / kFrames, most_splits, sent / kFrames / 1024, sum / kFrames, frames[kFrames * 95 / 100],
+        frames.back(), 1e3 * made, double(mesh.memory()) / (1 << 20));
     std::fflush(stdout);
 }
 
@@ -131,11 +133,12 @@ int main(int argc, char** argv) {
         return 2;
     }
     fmt::print(
-        "| mesh | eye, diagonals off | pixels | active triangles | splits a frame | most | KiB a frame | "
+        "| mesh | eye, diagonals off | visits | pixels | active triangles | splits a frame | most | KiB a "
+        "frame | "
         "frame, mean "
         "ms | 95 % | worst | made in ms | MiB |\n| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- "
-        "| --- | "
-        "--- |\n| bar (goal) | | | 100000 | | | | 4 (1) | | | | |\n");
+        "| --- | --- | "
+        "--- |\n| bar (goal) | | | | 100000 | | | | 4 (1) | | | | |\n");
     for (int i = 1; i < argc; ++i) {
         const std::string path = argv[i];
         for (const auto& [placement, word] : {std::pair(bake::Placement::kEndpoint, "endpoint"),
@@ -156,7 +159,8 @@ int main(int argc, char** argv) {
             }
             const std::string name =
                 path.substr(path.rfind('/') + 1) + (baked ? "" : std::string(", ") + word);
-            for (const float distance : {1.2f, 0.6f}) row(name, *mesh, made, distance);
+            for (const float distance : {1.2f, 0.6f})
+                for (const std::size_t visits : {kAll, kFew}) row(name, *mesh, made, distance, visits);
         }
     }
 }

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: MIT
 #include "open.hpp"
 
-#include <fmt/format.h>
-
 #include <cstring>
 
 #include "cloud.hpp"
@@ -11,7 +9,20 @@
 #include "vsplit/bake/files.hpp"
 #include "vsplit/read.hpp"
 
+#ifdef VSPLIT_VIEWER
+#include "../window/texture.hpp"
+#endif
+
 namespace vsplit::app {
+namespace {
+
+#ifdef VSPLIT_VIEWER
+constexpr studio::DecodeImage kDecode = studio::decode_image;
+#else
+constexpr studio::DecodeImage kDecode = nullptr;  // without VTK: the materials' own colours
+#endif
+
+}  // namespace
 
 Result<studio::Source> open_source(const InputOptions& input, const Common& common, int& exit) {
     const auto failed = [&](const Error& error) {
@@ -35,6 +46,7 @@ Result<studio::Source> open_source(const InputOptions& input, const Common& comm
             auto around = bake::parse_progressive_scene(file->bytes);
             if (!around) return failed(around.error());
             source.scene = std::move(*around);
+            source.colours = studio::base_colours(*source.scene, source.mesh, kDecode);
         }
         source.record = std::move(*record);
         return source;
@@ -50,24 +62,13 @@ Result<studio::Source> open_source(const InputOptions& input, const Common& comm
     if (is_gltf(file->bytes, extension)) {
         auto scene = load_scene(input, file->bytes, exit);
         if (!scene) return scene.error();
-        if (scene->parts.size() > 1) {
-            // Each part is in a space of its own: one picture of all needs them where their nodes place them.
-            auto whole = load_mesh(input, exit);
-            if (!whole) return whole.error();
-            if (!common.quiet)
-                fmt::print(stderr, "vsplit: {}: {} meshes, taken as one without their materials\n",
-                           input.path, scene->parts.size());
-            source.mesh = std::move(whole->mesh);
-            source.vertex_of = std::move(whole->vertex_of);
-            source.file_vertices = whole->report.vertices_in;
-            return source;
-        }
         source.mesh = std::move(scene->mesh);
         source.part_of = scene->part_of;
         scene->mesh = {};
         for (const Attribute& attribute : source.mesh.attributes)
             scene->mesh.attributes.push_back({attribute.name, attribute.semantic, attribute.components, {}});
         source.scene = std::move(*scene);
+        source.colours = studio::base_colours(*source.scene, source.mesh, kDecode);
         return source;
     }
     *file = {};

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "../window/display.hpp"
 #include "../window/picture.hpp"
 #include "cloud.hpp"
 #include "model.hpp"
@@ -29,15 +30,18 @@ struct RenderCommand {
     bool wireframe = false, flat = false, plain = false;
 
     int run() const;
-    int finish(Result<std::vector<std::byte>> png) const;
+    int finish(Result<std::vector<std::byte>> png, Json shown) const;
     Result<std::vector<std::byte>> textured(const studio::Document& document, int width, int height) const;
 };
 
-int RenderCommand::finish(Result<std::vector<std::byte>> png) const {
+int RenderCommand::finish(Result<std::vector<std::byte>> png, Json shown) const {
     if (!png) return fail_input(input.path, png.error());
     if (const int failed = write_output(output, *png)) return failed;
-    if (common.json && !common.quiet)
-        print_json({{"input", input.path}, {"output", output.path}, {"bytes", png->size()}});
+    if (common.json && !common.quiet) {
+        Json report{{"input", input.path}, {"output", output.path}, {"bytes", png->size()}, {"size", size}};
+        report.update(shown);
+        print_json(report);
+    }
     say(common, fmt::format("{}: {} bytes", output.path, with_commas(png->size())));
     return kDone;
 }
@@ -68,6 +72,7 @@ int RenderCommand::run() const {
                           view);
     if (extension_of(output.path) != ".png") return fail_usage("pictures are written as .png");
     if (const int refused = check_output(output)) return refused;
+    if (const Status there = studio::check_display(); !there) return fail_input("render", there.error());
     int exit = kDone;
 #ifdef VSPLIT_WITH_CGAL
     {
@@ -80,7 +85,7 @@ int RenderCommand::run() const {
             for (const auto& p : points->cloud.positions)
                 positions.push_back({float(p[0]), float(p[1]), float(p[2])});
             const auto camera = studio::camera_for(studio::box_of(positions), view, width, height);
-            return finish(studio::picture_of_points(positions, *camera));
+            return finish(studio::picture_of_points(positions, *camera), {{"points", positions.size()}});
         }
     }
 #endif
@@ -89,10 +94,14 @@ int RenderCommand::run() const {
     studio::Document& d = **document;
     d.go_to(error ? level_for_error(d.live().state(), *error) : d.level_for_ratio(ratio));
     const studio::Look look{flat, wireframe, *studio::heat_of(heat)};
+    const Json shown{{"triangles", d.live().triangles().size()},
+                     {"vertices", d.live().positions().size()},
+                     {"ratio", d.ratio()},
+                     {"error", d.live().error()}};
     const bool painted = !d.painting().marks().regions.empty();
     if (d.source().scene && look.heat == studio::Heat::kNone && !plain && !painted)
-        return finish(textured(d, width, height));
-    return finish(studio::picture(d, *studio::camera_for(d.box(), view, width, height), look));
+        return finish(textured(d, width, height), shown);
+    return finish(studio::picture(d, *studio::camera_for(d.box(), view, width, height), look), shown);
 }
 
 }  // namespace

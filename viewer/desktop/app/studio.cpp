@@ -8,6 +8,7 @@
 #include "open.hpp"
 #include "vsplit/bake/files.hpp"
 #ifdef VSPLIT_VIEWER
+#include "../window/display.hpp"
 #include "../window/picture.hpp"
 #include "../window/window.hpp"
 #include "watch.hpp"
@@ -63,6 +64,7 @@ int StudioCommand::run() const {
             return fail_usage("--size wants WIDTHxHEIGHT, 320x240 to 8192x8192, not " + size);
         options.bench = bench;
         options.marks = marks;
+        if (const Status there = studio::check_display(); !there) return fail_input("studio", there.error());
         bake::CollapseOptions chosen;
         if (const auto reason = collapse.set(chosen)) return fail_usage(*reason);
         auto watched = watch_reconstruction(input.path, options.width, options.height, common.threads, exit);
@@ -70,7 +72,8 @@ int StudioCommand::run() const {
         auto document = watched ? document_of(std::move(**watched), collapse, marks, common, exit)
                                 : open_document(input, collapse, marks, common, exit);
         if (!document) return exit;
-        return studio::run_window(std::move(*document), options) ? kDone : kFailed;
+        studio::run_window(std::move(*document), options);
+        return kDone;
 #else
         return fail_usage(
             "this vsplit was built without the studio's window (VSPLIT_VIEWER); it runs --script");

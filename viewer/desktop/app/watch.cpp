@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: MIT
 #include "watch.hpp"
 
-#include <cstdlib>
-
 #include "cloud.hpp"
 #include "vsplit/bake/files.hpp"
 #ifdef VSPLIT_WITH_CGAL
@@ -24,9 +22,8 @@ std::optional<Result<studio::Source>> watch_reconstruction(const std::string&, i
 
 std::optional<Result<studio::Source>> watch_reconstruction(const std::string& path, int width, int height,
                                                            int threads, int& exit) {
-    const char* display = std::getenv("DISPLAY");
     const auto bytes = bake::read_file(path);
-    if (!display || !*display || !bytes || !is_point_cloud(*bytes, extension_of(path))) return std::nullopt;
+    if (!bytes || !is_point_cloud(*bytes, extension_of(path))) return std::nullopt;
     const auto failed = [&](const Error& error) -> Result<studio::Source> {
         exit = fail_input(path, error);
         return error;

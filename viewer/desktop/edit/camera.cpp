@@ -10,6 +10,8 @@
 #include <numbers>
 #include <utility>
 
+#include "collapse/triangle_distance.hpp"
+
 namespace vsplit::studio {
 namespace {
 
@@ -24,22 +26,6 @@ Double3 at(const Float3& p) {
 
 double tan_half(const Camera& camera) {
     return std::tan(camera.fov_degrees * std::numbers::pi / 360);
-}
-
-/// Where the ray meets the triangle (Moeller and Trumbore 1997), or infinity.
-double meet(const Ray& ray, Double3 a, Double3 b, Double3 c) {
-    constexpr double kMiss = std::numeric_limits<double>::infinity();
-    const Double3 e1 = b - a, e2 = c - a, p = cross(ray.direction, e2);
-    const double det = dot(e1, p);
-    if (det == 0) return kMiss;
-    const Double3 s = ray.from - a;
-    const double u = dot(s, p) / det;
-    if (!(u >= 0 && u <= 1)) return kMiss;
-    const Double3 q = cross(s, e1);
-    const double v = dot(ray.direction, q) / det;
-    if (!(v >= 0 && u + v <= 1)) return kMiss;
-    const double t = dot(e2, q) / det;
-    return t > 0 ? t : kMiss;
 }
 
 std::optional<std::pair<double, double>> two_numbers(std::string_view text) {
@@ -111,6 +97,15 @@ std::optional<Camera> camera_for(const Box& box, std::string_view view, int widt
     return camera;
 }
 
+Hit hit_on(std::span<const Float3> positions, std::span<const Triangle> triangles, std::uint32_t triangle,
+           Double3 point, double distance) {
+    Hit hit{triangle, triangles[triangle][0], point, distance};
+    for (const std::uint32_t v : triangles[triangle])
+        if (bake::length2(at(positions[v]) - point) < bake::length2(at(positions[hit.vertex]) - point))
+            hit.vertex = v;
+    return hit;
+}
+
 std::optional<Hit> pick(std::span<const Float3> positions, std::span<const Triangle> triangles,
                         const Ray& ray) {
     using Found = std::pair<double, std::uint32_t>;
@@ -120,24 +115,15 @@ std::optional<Hit> pick(std::span<const Float3> positions, std::span<const Trian
         [&](const tbb::blocked_range<std::size_t>& range, Found best) {
             for (std::size_t i = range.begin(); i < range.end(); ++i) {
                 const Triangle& t = triangles[i];
-                const double d = meet(ray, at(positions[t[0]]), at(positions[t[1]]), at(positions[t[2]]));
+                const double d = bake::distance_along(ray.from, ray.direction, at(positions[t[0]]),
+                                                      at(positions[t[1]]), at(positions[t[2]]));
                 best = std::min(best, Found{d, std::uint32_t(i)});
             }
             return best;
         },
         [](const Found& a, const Found& b) { return std::min(a, b); });
     if (!(found.first < none.first)) return std::nullopt;
-    Hit hit;
-    hit.distance = found.first;
-    hit.triangle = found.second;
-    hit.point = ray.from + ray.direction * found.first;
-    double nearest = none.first;
-    for (const std::uint32_t v : triangles[found.second])
-        if (const double d = bake::length(at(positions[v]) - hit.point); d < nearest) {
-            nearest = d;
-            hit.vertex = v;
-        }
-    return hit;
+    return hit_on(positions, triangles, found.second, ray.from + ray.direction * found.first, found.first);
 }
 
 }  // namespace vsplit::studio

@@ -51,7 +51,12 @@ struct Hit {
     double distance = 0;
 };
 
-/// The first triangle that the ray meets, from either side. All cores; linear.
+/// A hit on a triangle that is known; its nearest corner is found.
+Hit hit_on(std::span<const Float3> positions, std::span<const Triangle> triangles, std::uint32_t triangle,
+           Double3 point, double distance);
+
+/// The first triangle that the ray meets, from either side. All cores; linear: of more than a few rays,
+/// Surface::pick() is faster.
 std::optional<Hit> pick(std::span<const Float3> positions, std::span<const Triangle> triangles,
                         const Ray& ray);
 

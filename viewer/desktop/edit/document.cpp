@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <map>
 
 #include "vsplit/bake/meshes.hpp"
 
@@ -67,7 +68,13 @@ Result<std::unique_ptr<Document>> Document::open(Source source, bake::CollapseOp
     d.source_ = std::move(source);
     d.options_ = std::move(options);
     d.options_.part_of = d.source_.part_of;
-    d.box_ = box_of(d.source_.mesh.positions);
+    if (d.source_.scene) {
+        d.placement_ = Placement(*d.source_.scene);
+        d.materials_ = bake::scene_materials(*d.source_.scene);
+    }
+    const Mesh& mesh = d.source_.mesh;
+    d.box_ =
+        box_of(d.placed() ? d.show(mesh.positions, mesh.triangles, mesh.groups).positions : mesh.positions);
     d.painting_ = Painting(d.source_.mesh.positions.size());
     if (!d.source_.mesh.weights.empty()) {
         d.painting_.replace(marks_of_weights(d.source_.mesh.weights));
@@ -82,6 +89,7 @@ Result<std::unique_ptr<Document>> Document::open(Source source, bake::CollapseOp
         if (!result) return result.error();
         record = std::move(result->mesh);
     }
+    d.closed_ = d.every_part_closed();
     d.adopt(std::move(*record));
     d.go_to(d.live_->max_level());
     return document;
@@ -103,11 +111,59 @@ void Document::go_to(std::size_t level) {
     surface_.reset();
 }
 
+std::vector<Triangle> Document::take_repainted() {
+    std::vector<std::uint32_t> triangles, changed;
+    const std::uint32_t alive = vertices_at(live_->state(), live_->level());
+    for (const std::uint32_t origin : painting_.take_changed()) {
+        const std::uint32_t v = record_of_[origin];
+        if (v >= alive) continue;
+        changed.push_back(v);
+    }
+    Surface& there = surface();
+    const auto take = [&](std::uint32_t shown) {
+        const auto star = there.star(shown);
+        triangles.insert(triangles.end(), star.begin(), star.end());
+    };
+    if (!placed()) {
+        for (const std::uint32_t v : changed) take(v);
+    } else {
+        std::vector<char> is_changed(alive, 0);
+        for (const std::uint32_t v : changed) is_changed[v] = 1;
+        for (std::uint32_t i = 0; i < shown_.vertex_of.size(); ++i)
+            if (is_changed[shown_.vertex_of[i]]) take(i);
+    }
+    std::sort(triangles.begin(), triangles.end());
+    triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
+    std::vector<Triangle> found;
+    for (const std::uint32_t t : triangles) found.push_back(shown_triangles()[t]);
+    return found;
+}
+
 Surface& Document::surface() {
-    if (!surface_)
-        surface_ = std::make_unique<Surface>(live_->positions(), live_->triangles(),
-                                             !source_.mesh.attributes.empty());
+    if (!surface_) {
+        if (placed()) shown_ = show(live_->positions(), live_->triangles(), groups_at_level());
+        surface_ = std::make_unique<Surface>(shown_positions(), shown_triangles(),
+                                             !source_.mesh.attributes.empty() || placed());
+    }
     return *surface_;
+}
+
+std::span<const Float3> Document::shown_positions() {
+    return placed() ? std::span<const Float3>(shown_.positions) : live_->positions();
+}
+
+std::span<const Triangle> Document::shown_triangles() {
+    return placed() ? std::span<const Triangle>(shown_.triangles) : live_->triangles();
+}
+
+std::vector<std::uint32_t> Document::level_vertices(std::vector<std::uint32_t> shown) const {
+    for (std::uint32_t& v : shown) v = level_vertex(v);
+    return shown;
+}
+
+std::span<const std::uint32_t> Document::groups_at_level() const {
+    const std::vector<std::uint32_t>& groups = live_->state().groups;
+    return {groups.data(), std::min(groups.size(), live_->triangles().size())};
 }
 
 void Document::mark_level_vertices(std::span<const std::uint32_t> vertices, std::uint8_t region,
@@ -132,14 +188,15 @@ void Document::dab(const Hit& hit, const Brush& brush) {
         const std::vector<std::uint32_t> reached =
             surface().within(where.point, where.triangle, brush.radius);
         if (brush.strength >= 1 || brush.region == 0) {
-            mark_level_vertices(reached, brush.region, brush.strength);
+            mark_level_vertices(level_vertices(reached), brush.region, brush.strength);
             return;
         }
         for (const std::uint32_t v : reached) {
             const double d =
-                bake::length(at(live_->positions()[v]) - where.point) / std::max(brush.radius, 1e-30);
+                bake::length(at(shown_positions()[v]) - where.point) / std::max(brush.radius, 1e-30);
             const float falloff = d < 1 ? float(1 - d * d) : 0.05f;
-            mark_level_vertices({&v, 1}, brush.region, brush.strength * std::max(falloff, 0.05f));
+            const std::uint32_t marked = level_vertex(v);
+            mark_level_vertices({&marked, 1}, brush.region, brush.strength * std::max(falloff, 0.05f));
         }
     };
     paint(hit);
@@ -148,36 +205,48 @@ void Document::dab(const Hit& hit, const Brush& brush) {
         if (!(brush.mirror & (1u << axis))) continue;
         for (std::size_t i = 0, n = points.size(); i < n; ++i) {
             points.push_back(mirrored(points[i], box_, axis));
-            if (const auto other =
-                    nearest(live_->positions(), live_->triangles(), points.back(), brush.radius))
-                paint(*other);
+            if (const auto other = surface().nearest(points.back(), brush.radius)) paint(*other);
         }
     }
 }
 
-bool Document::select_component(std::uint32_t level_vertex, std::uint8_t region) {
+bool Document::select_component(std::uint32_t vertex, std::uint8_t region) {
     painting_.begin();
-    mark_level_vertices(surface().component(level_vertex), region, 1);
+    mark_level_vertices(level_vertices(surface().component(vertex)), region, 1);
     return painting_.end();
 }
 
 bool Document::select_sharper_than(double degrees, std::uint8_t region) {
     painting_.begin();
-    mark_level_vertices(surface().sharper_than(degrees), region, 1);
+    mark_level_vertices(level_vertices(surface().sharper_than(degrees)), region, 1);
     return painting_.end();
 }
 
-bool Document::select_material(std::uint32_t level_triangle, std::uint8_t region) {
+std::uint32_t Document::material_number(std::uint32_t group) const {
+    return group < materials_.size() ? materials_[group].number : group;
+}
+
+std::string Document::material_of(std::uint32_t triangle) {
+    surface();
+    const auto groups = groups_at_level();
+    if (groups.empty()) return {};
+    const std::uint32_t group = groups[level_triangle(triangle)];
+    if (group < materials_.size() && !materials_[group].name.empty()) return materials_[group].name;
+    const std::uint32_t number = material_number(group);
+    return number == kNoVertex ? "of the format's default" : std::to_string(number);
+}
+
+bool Document::select_material(std::uint32_t triangle, std::uint8_t region) {
+    surface();
     const std::vector<std::uint32_t>& groups = live_->state().groups;
-    const auto group = [&](std::size_t t) { return groups.empty() ? 0u : groups[t]; };
-    std::vector<std::uint32_t> vertices;
+    const auto material = [&](std::size_t t) { return groups.empty() ? 0u : material_number(groups[t]); };
+    const std::uint32_t wanted = material(level_triangle(triangle));
+    painting_.begin();
     // Of the full model: a coarse triangle's corner may have descendants of several materials.
     for (std::size_t t = 0; t < full_.triangles.size(); ++t)
-        if (group(t) == group(level_triangle))
-            vertices.insert(vertices.end(), full_.triangles[t].begin(), full_.triangles[t].end());
-    painting_.begin();
-    for (const std::uint32_t v : vertices)
-        if (origins_[v] != kNoVertex) painting_.mark(origins_[v], region, 1);
+        if (material(t) == wanted)
+            for (const std::uint32_t v : full_.triangles[t])
+                if (origins_[v] != kNoVertex) painting_.mark(origins_[v], region, 1);
     return painting_.end();
 }
 
@@ -197,10 +266,25 @@ Mesh Document::painted() const {
     return mesh;
 }
 
+bool Document::every_part_closed() const {
+    const Mesh& mesh = source_.mesh;
+    if (!placed()) return studio::closed(mesh.positions, mesh.triangles);
+    std::map<std::uint32_t, std::vector<Triangle>> parts;
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+        parts[mesh.groups.empty() ? 0 : placement_.part_of_group(mesh.groups[t])].push_back(
+            mesh.triangles[t]);
+    return std::all_of(parts.begin(), parts.end(),
+                       [&](const auto& part) { return studio::closed(mesh.positions, part.second); });
+}
+
 void Document::adopt(ProgressiveMesh record) {
     const double ratio_shown = live_ ? ratio() : 1;
     surface_.reset();
+    refined_.reset();
     origins_ = bake::record_origins(source_.mesh, record);
+    record_of_.assign(source_.mesh.positions.size(), kNoVertex);
+    for (std::uint32_t v = 0; v < origins_.size(); ++v)
+        if (origins_[v] != kNoVertex) record_of_[origins_[v]] = v;
     full_ = cut(record, record.splits.size());
     const std::size_t n = record.positions.size();
     child_starts_.assign(n + 1, 0);
@@ -215,27 +299,27 @@ void Document::adopt(ProgressiveMesh record) {
     live_->go_to(level_for_ratio(ratio_shown));
 }
 
-Mesh Document::refined_in_place() const {
-    const std::uint32_t alive = vertices_at(live_->state(), live_->level());
+Result<Mesh> Document::refined_in_place() {
+    // An error of what is marked counts so much more that none of it is below any level's.
+    constexpr float kMarked = 1e12f;
+    if (!refined_) {
+        LiveMesh copy = *live_;
+        auto made = ViewMesh::make(copy.release());
+        if (!made) return made.error();
+        refined_.emplace(std::move(*made));
+    }
     const bake::Marks& marks = painting_.marks();
-    std::vector<std::uint32_t> to(full_.positions.size());
+    std::vector<float> priorities(origins_.size(), 1);
+    for (std::size_t v = 0; v < priorities.size(); ++v)
+        if (origins_[v] != kNoVertex && marks.region[origins_[v]] != 0) priorities[v] = kMarked;
+    if (const Status set = refined_->set_priority(priorities); !set) return set.error();
+    refined_->rank();
+    refined_->refine_to(refined_->rank_for_error(live_->error()));
     Mesh mesh;
-    mesh.positions = full_.positions;
-    mesh.origin = full_.origin;
-    for (std::uint32_t v = 0; v < to.size(); ++v) {
-        const bool marked = origins_[v] != kNoVertex && marks.region[origins_[v]] != 0;
-        const std::uint32_t parent = live_->state().parents[v];
-        to[v] = v < alive || marked || parent == kNoVertex ? v : to[parent];
-        if (v < alive && !marked) mesh.positions[v] = live_->positions()[v];
-    }
-    // A marked parent stands where it is at the end, so what hangs on it is not torn off.
-    for (std::size_t t = 0; t < full_.triangles.size(); ++t) {
-        const Triangle& corners = full_.triangles[t];
-        const Triangle moved{to[corners[0]], to[corners[1]], to[corners[2]]};
-        if (moved[0] == moved[1] || moved[1] == moved[2] || moved[2] == moved[0]) continue;
-        mesh.triangles.push_back(moved);
-        if (!full_.groups.empty()) mesh.groups.push_back(full_.groups[t]);
-    }
+    mesh.positions.assign(refined_->positions().begin(), refined_->positions().end());
+    mesh.triangles.assign(refined_->triangles().begin(), refined_->triangles().end());
+    mesh.groups.assign(refined_->groups().begin(), refined_->groups().end());
+    mesh.origin = live_->state().origin;
     return mesh;
 }
 
@@ -274,8 +358,17 @@ Result<std::vector<std::byte>> Document::encode(const std::string& extension, do
         LiveMesh copy = *live_;
         return write_progressive_mesh(copy.release(), write);
     }
-    if (extension == ".ply") return bake::encode_ply(level(ratio).mesh);
-    if (extension == ".obj") return bake::encode_obj(level(ratio).mesh);
+    if (extension == ".ply" || extension == ".obj") {
+        Mesh mesh = level(ratio).mesh;
+        if (placed()) {
+            // Neither has nodes: everything where it is seen.
+            Shown shown = show(mesh.positions, mesh.triangles, mesh.groups);
+            mesh = {};
+            mesh.positions = std::move(shown.positions);
+            mesh.triangles = std::move(shown.triangles);
+        }
+        return extension == ".ply" ? bake::encode_ply(mesh) : bake::encode_obj(mesh);
+    }
     if (extension != ".glb")
         return Error{ErrorCode::kArgument, "exports are .pmesh, .glb, .ply or .obj, not '" + extension + "'",
                      Error::kNowhere, 0};
@@ -285,7 +378,10 @@ Result<std::vector<std::byte>> Document::encode(const std::string& extension, do
     LiveMesh copy = *live_;
     auto stream = write_progressive_mesh(copy.release(), write);
     if (!stream) return stream.error();
-    return bake::encode_progressive_scene(*source_.scene, level(0), *stream);
+    // Of a mesh that has vanished from the base, a triangle of the full one stands in.
+    bake::Scene whole = *source_.scene;
+    whole.mesh = source_.mesh;
+    return bake::encode_progressive_scene(whole, level(0), *stream);
 }
 
 }  // namespace vsplit::studio

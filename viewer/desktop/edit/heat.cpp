@@ -129,12 +129,14 @@ Rgb plain_colour(const Document& document, std::uint32_t vertex) {
     constexpr Rgb kPlain{205, 208, 212};
     const std::uint32_t origin = document.origin(vertex);
     const bake::Marks& marks = document.painting().marks();
-    if (origin == kNoVertex || marks.region[origin] == 0) return kPlain;
+    const std::vector<Rgb>& own = document.source().colours;
+    const Rgb plain = origin == kNoVertex || own.empty() ? kPlain : own[origin];
+    if (origin == kNoVertex || marks.region[origin] == 0) return plain;
     const Rgb full = rgb(marks.regions[marks.region[origin] - 1].colour);
     const double s = 0.25 + 0.75 * double(marks.strength[origin]);
     Rgb mixed;
     for (std::size_t k = 0; k < 3; ++k)
-        mixed[k] = std::uint8_t(std::lround(double(kPlain[k]) * (1 - s) + s * double(full[k])));
+        mixed[k] = std::uint8_t(std::lround(double(plain[k]) * (1 - s) + s * double(full[k])));
     return mixed;
 }
 
@@ -150,6 +152,25 @@ std::vector<Rgb> level_colours(const Document& document, const LiveMesh& live, H
         colours[v] = ramp((double(made.values[v]) - double(made.low)) / span);
     if (map) *map = std::move(made);
     return colours;
+}
+
+LevelPicture level_picture(const Document& document, const LiveMesh& live, Heat heat, HeatMap* map) {
+    LevelPicture picture;
+    picture.positions = live.positions();
+    picture.triangles = live.triangles();
+    picture.colours = level_colours(document, live, heat, map);
+    if (!document.placed()) return picture;
+    const std::vector<std::uint32_t>& groups = live.state().groups;
+    picture.shown = document.show(live.positions(), live.triangles(),
+                                  {groups.data(), std::min(groups.size(), live.triangles().size())});
+    std::vector<Rgb> colours;
+    colours.reserve(picture.shown.vertex_of.size());
+    for (const std::uint32_t v : picture.shown.vertex_of) colours.push_back(picture.colours[v]);
+    picture.colours = std::move(colours);
+    // Moving a vector keeps where its elements are.
+    picture.positions = picture.shown.positions;
+    picture.triangles = picture.shown.triangles;
+    return picture;
 }
 
 void smooth_normals(std::span<const Float3> positions, std::span<const Triangle> triangles,

@@ -31,16 +31,23 @@ struct HeatMap {
 };
 HeatMap heat_map(const Document& document, const LiveMesh& live, Heat heat);
 
-using Rgb = std::array<std::uint8_t, 3>;
 /// Dark blue to yellow, growing lighter all the way; `t` from 0 to 1.
 Rgb ramp(double t);
 Rgb rgb(std::uint32_t colour);
 
 /// `live` is the document's record at any level.
-/// One colour a vertex of the level: the ramp, or for kNone a plain grey (of groups, a tint each) and
-/// the regions by their strength.
+/// One colour a vertex of the level: the ramp, or for kNone the model's own colours, or a plain grey, and
+/// over them the regions by their strength.
 std::vector<Rgb> level_colours(const Document& document, const LiveMesh& live, Heat heat,
                                HeatMap* map = nullptr);
+/// A level as it is shown, for a renderer.
+struct LevelPicture {
+    std::span<const Float3> positions;  ///< Of the live mesh, or of `shown`.
+    std::span<const Triangle> triangles;
+    std::vector<Rgb> colours;
+    Shown shown;  ///< Empty where nothing is moved.
+};
+LevelPicture level_picture(const Document& document, const LiveMesh& live, Heat heat, HeatMap* map = nullptr);
 /// The colour of one vertex for kNone.
 Rgb plain_colour(const Document& document, std::uint32_t vertex);
 

@@ -4,45 +4,39 @@
 
 namespace vsplit::studio {
 
-void Rebake::start(Mesh mesh, bake::CollapseOptions options) {
-    cancel();
-    stop_ = false;
-    running_ = first_ = true;
-    progress_ = 0;
-    thread_ = std::thread([this, mesh = std::move(mesh), options = std::move(options)]() mutable {
-        for (const bool measured : {false, true}) {
-            options.calibrate = measured;
-            auto result = bake::collapse(mesh, options, [&](std::string_view stage, double done) {
-                progress_ = !measured             ? 0.2 * done
-                            : stage == "collapse" ? 0.2 + 0.2 * done
-                                                  : 0.4 + 0.6 * done;
-                return !stop_;
-            });
-            const bool ok = result.ok();
-            {
-                const std::lock_guard guard(lock_);
-                result_.emplace(std::move(result));
-            }
-            if (!ok) break;
-        }
-        running_ = false;
+void start_rebake(Rebake& rebake, Mesh mesh, bake::CollapseOptions options) {
+    rebake.start([mesh = std::move(mesh), options = std::move(options)](const Rebake::Job& job) {
+        bake::CollapseOptions first = options;
+        first.calibrate = first.put_off_outliers = false;
+        auto recorded = bake::collapse(
+            mesh, first, [&](std::string_view, double done) { return job.progress(0.3 * done); });
+        const bool ok = recorded.ok();
+        job.give({std::move(recorded), !ok});
+        if (!ok) return;
+        auto measured = bake::collapse(mesh, options, [&](std::string_view stage, double done) {
+            return job.progress(stage == "collapse" ? 0.3 + 0.3 * done : 0.6 + 0.4 * done);
+        });
+        job.give({std::move(measured), true});
     });
 }
 
-void Rebake::cancel() {
-    stop_ = true;
-    if (thread_.joinable()) thread_.join();
-    result_.reset();
-    running_ = first_ = false;
-}
-
-std::optional<Result<bake::CollapseResult>> Rebake::take() {
-    const std::lock_guard guard(lock_);
-    if (!result_) return std::nullopt;
-    std::optional<Result<bake::CollapseResult>> result = std::move(result_);
-    result_.reset();
-    first_ = false;
-    return result;
+void start_search(WeightSearch& search, Mesh mesh, bake::Marks marks, bake::Keep wish,
+                  bake::CollapseOptions options) {
+    search.start([mesh = std::move(mesh), marks = std::move(marks), wish = std::move(wish),
+                  options = std::move(options)](const WeightSearch::Job& job) mutable {
+        // A search makes about ten records; each begins anew.
+        constexpr double kRecords = 10;
+        double records = 0, last = 0;
+        auto found =
+            bake::find_weights(mesh, marks, {&wish, 1}, options, [&](std::string_view stage, double done) {
+                const double all = stage == "collapse" ? 0.5 * done : 0.5 + 0.5 * done;
+                if (all < last) ++records;
+                last = all;
+                const double made = records + all;
+                return job.progress(made / (made + kRecords / 2) * (1 + 0.5 / kRecords));
+            });
+        job.give({std::move(wish), std::move(found)});
+    });
 }
 
 }  // namespace vsplit::studio

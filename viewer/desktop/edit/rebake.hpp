@@ -1,45 +1,36 @@
 // SPDX-FileCopyrightText: 2026 The vsplit authors
 // SPDX-License-Identifier: MIT
 //
-// A bake in the background.
+// What the studio does in the background: bakes, and searches for weights.
 #pragma once
 
-#include <atomic>
-#include <mutex>
-#include <optional>
-#include <thread>
+#include <string>
+#include <vector>
 
+#include "background.hpp"
 #include "vsplit/bake/collapse.hpp"
+#include "vsplit/bake/weights.hpp"
 
 namespace vsplit::studio {
 
-/// One bake at a time on a thread of its own; its owner polls. Not for use from several threads.
-class Rebake {
-  public:
-    Rebake() = default;
-    ~Rebake() { cancel(); }
-    Rebake(const Rebake&) = delete;
-    Rebake& operator=(const Rebake&) = delete;
-
-    /// Cancels what is running. Two results come, one after the other: the record with estimated errors, in a
-    /// fraction of the time, then the same with measured ones.
-    void start(Mesh mesh, bake::CollapseOptions options);
-    bool running() const { return running_; }
-    /// 0 to 1.
-    double progress() const { return progress_; }
-    /// Stops and waits.
-    void cancel();
-    /// A result that is there, once.
-    std::optional<Result<bake::CollapseResult>> take();
-    /// The first of the two is still to come or to be taken.
-    bool first_pending() const { return first_; }
-
-  private:
-    std::thread thread_;
-    std::atomic<bool> running_{false}, stop_{false}, first_{false};
-    std::mutex lock_;  // of result_
-    std::atomic<double> progress_{0};
-    std::optional<Result<bake::CollapseResult>> result_;
+struct Rebaked {
+    Result<bake::CollapseResult> result;
+    bool last = true;  ///< Nothing comes after it.
 };
+using Rebake = Background<Rebaked>;
+
+/// Two results come, one after the other: the sequence as it is recorded, with estimated errors, in a third
+/// of the time, then with outliers put off and errors measured.
+void start_rebake(Rebake& rebake, Mesh mesh, bake::CollapseOptions options);
+
+struct Search {
+    bake::Keep wish;
+    Result<std::vector<bake::KeepResult>> found;
+};
+using WeightSearch = Background<Search>;
+
+/// As find_weights(), of one wish. Its progress says how near it is by the number of records made.
+void start_search(WeightSearch& search, Mesh mesh, bake::Marks marks, bake::Keep wish,
+                  bake::CollapseOptions options);
 
 }  // namespace vsplit::studio

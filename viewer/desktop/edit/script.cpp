@@ -137,13 +137,12 @@ Json Runner::stroke(const Json& step) {
             if (screen) {
                 if (!p.is_array() || p.size() != 2 || !p[0].is_number() || !p[1].is_number())
                     fault("a point on the screen is two numbers");
-                hit = pick(document_.live().positions(), document_.live().triangles(),
-                           ray_through(camera_, p[0].get<double>(), p[1].get<double>()));
+                hit = document_.pick(ray_through(camera_, p[0].get<double>(), p[1].get<double>()));
                 if (hit) brush.radius = radius * pixel_size(camera_, hit->distance);
             } else {
                 brush.radius = radius;
-                hit = nearest(document_.live().positions(), document_.live().triangles(), point(p, "a point"),
-                              std::max(radius, 1e-3 * document_.box().diagonal()));
+                hit = document_.nearest(point(p, "a point"),
+                                        std::max(radius, 1e-3 * document_.box().diagonal()));
             }
             if (hit)
                 document_.dab(*hit, brush);
@@ -166,8 +165,7 @@ Json Runner::select(const Json& step) {
         changed = document_.select_sharper_than(number(step, "degrees", 40.0, 0, 180), number_of);
     } else if (by == "component" || by == "material") {
         if (!step.contains("at")) fault("wants 'at', a point in the object");
-        const auto hit = nearest(document_.live().positions(), document_.live().triangles(),
-                                 point(step["at"], "'at'"), 0.05 * document_.box().diagonal());
+        const auto hit = document_.nearest(point(step["at"], "'at'"), 0.05 * document_.box().diagonal());
         if (!hit) fault("nothing is at 'at'");
         changed = by == "component" ? document_.select_component(hit->vertex, number_of)
                                     : document_.select_material(hit->triangle, number_of);
@@ -283,7 +281,15 @@ Json Runner::run(const Json& step) {
         write(step, document_.encode_weights());
     } else if (what == "refine") {
         // What is shown: the marked regions in full, the rest as it is.
-        const Mesh mesh = document_.refined_in_place();
+        auto made = document_.refined_in_place();
+        if (!made) throw Fault{made.error()};
+        Mesh mesh = std::move(*made);
+        if (document_.placed()) {
+            Shown shown = document_.show(mesh.positions, mesh.triangles, mesh.groups);
+            mesh = {};
+            mesh.positions = std::move(shown.positions);
+            mesh.triangles = std::move(shown.triangles);
+        }
         write(step, bake::encode_ply(mesh));
         add({{"vertices", mesh.positions.size()}, {"triangles", mesh.triangles.size()}});
     } else if (what == "export") {

@@ -2,23 +2,42 @@
 // SPDX-License-Identifier: MIT
 #include "surface.hpp"
 
-#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
-#include <tbb/parallel_reduce.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
-#include <limits>
+#include <cmath>
 #include <numbers>
 #include <numeric>
 
-#include "collapse/triangle_distance.hpp"
+#include "collapse/triangle_tree.hpp"
 
 namespace vsplit::studio {
 namespace {
 
 Double3 at(const Float3& p) {
     return {double(p.x), double(p.y), double(p.z)};
+}
+
+/// For each vertex the first one at the same place.
+std::vector<std::uint32_t> by_place(std::span<const Float3> positions) {
+    const auto key = [&](std::uint32_t v) {
+        const Float3& p = positions[v];
+        return std::array{std::bit_cast<std::uint32_t>(p.x + 0.0f), std::bit_cast<std::uint32_t>(p.y + 0.0f),
+                          std::bit_cast<std::uint32_t>(p.z + 0.0f)};
+    };
+    std::vector<std::uint32_t> order(positions.size()), place(positions.size());
+    std::iota(order.begin(), order.end(), 0u);
+    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+        const auto ka = key(a), kb = key(b);
+        return ka != kb ? ka < kb : a < b;
+    });
+    for (std::size_t i = 0, first = 0; i < order.size(); ++i) {
+        if (key(order[i]) != key(order[first])) first = i;
+        place[order[i]] = order[first];
+    }
+    return place;
 }
 
 }  // namespace
@@ -37,19 +56,38 @@ Surface::Surface(std::span<const Float3> positions, std::span<const Triangle> tr
     for (std::size_t t = triangles.size(); t-- > 0;)
         for (const std::uint32_t v : triangles[t]) star_[--starts_[v]] = std::uint32_t(t);
     if (!seams) return;
-    const auto key = [&](std::uint32_t v) {
-        const Float3& p = positions_[v];
-        return std::array{std::bit_cast<std::uint32_t>(p.x + 0.0f), std::bit_cast<std::uint32_t>(p.y + 0.0f),
-                          std::bit_cast<std::uint32_t>(p.z + 0.0f)};
-    };
-    std::vector<std::uint32_t> order(positions.size());
-    std::iota(order.begin(), order.end(), 0u);
-    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
-    next_twin_.resize(order.size());
-    for (std::size_t i = 0, j = 0; i < order.size(); i = j) {
-        while (j < order.size() && key(order[j]) == key(order[i])) ++j;
-        for (std::size_t k = i; k < j; ++k) next_twin_[order[k]] = order[k + 1 < j ? k + 1 : i];
-    }
+    const std::vector<std::uint32_t> place = by_place(positions);
+    next_twin_.resize(positions.size());
+    std::iota(next_twin_.begin(), next_twin_.end(), 0u);
+    // Each is put in after the first at its place.
+    for (std::uint32_t v = 0; v < place.size(); ++v)
+        if (place[v] != v) std::swap(next_twin_[v], next_twin_[place[v]]);
+}
+
+Surface::~Surface() = default;
+
+void Surface::prepare() {
+    if (tree_ || triangles_.empty()) return;
+    mesh_.positions.assign(positions_.begin(), positions_.end());
+    mesh_.triangles.assign(triangles_.begin(), triangles_.end());
+    tree_ = std::make_unique<bake::TriangleTree>(mesh_);
+}
+
+std::optional<Hit> Surface::pick(const Ray& ray) {
+    prepare();
+    if (!tree_) return std::nullopt;
+    const bake::TriangleTree::Meeting met = tree_->first_met(ray.from, ray.direction);
+    if (!std::isfinite(met.distance)) return std::nullopt;
+    return hit_on(positions_, triangles_, met.triangle, ray.from + ray.direction * met.distance,
+                  met.distance);
+}
+
+std::optional<Hit> Surface::nearest(Double3 point, double reach) {
+    prepare();
+    if (!tree_) return std::nullopt;
+    const bake::TriangleTree::Hit found = tree_->closest(point);
+    if (!(found.distance2 <= reach * reach)) return std::nullopt;
+    return hit_on(positions_, triangles_, found.triangle, point, std::sqrt(found.distance2));
 }
 
 std::vector<std::uint32_t> Surface::within(Double3 point, std::uint32_t triangle, double radius) {
@@ -126,33 +164,30 @@ Double3 mirrored(Double3 point, const Box& box, int axis) {
     return point;
 }
 
-std::optional<Hit> nearest(std::span<const Float3> positions, std::span<const Triangle> triangles,
-                           Double3 point, double reach) {
-    using Found = std::pair<double, std::uint32_t>;
-    const Found none{std::numeric_limits<double>::infinity(), 0};
-    const Found found = tbb::parallel_reduce(
-        tbb::blocked_range<std::size_t>(0, triangles.size(), 8192), none,
-        [&](const tbb::blocked_range<std::size_t>& range, Found best) {
-            for (std::size_t i = range.begin(); i < range.end(); ++i) {
-                const Triangle& t = triangles[i];
-                best = std::min(
-                    best, Found{bake::distance2_to_triangle(point, at(positions[t[0]]), at(positions[t[1]]),
-                                                            at(positions[t[2]])),
-                                std::uint32_t(i)});
-            }
-            return best;
-        },
-        [](const Found& a, const Found& b) { return std::min(a, b); });
-    if (!(found.first <= reach * reach)) return std::nullopt;
-    Hit hit;
-    hit.triangle = found.second;
-    hit.point = point;
-    hit.distance = std::sqrt(found.first);
-    hit.vertex = triangles[found.second][0];
-    for (const std::uint32_t v : triangles[found.second])
-        if (bake::length2(at(positions[v]) - point) < bake::length2(at(positions[hit.vertex]) - point))
-            hit.vertex = v;
-    return hit;
+bool closed(std::span<const Float3> positions, std::span<const Triangle> triangles) {
+    const std::vector<std::uint32_t> place = by_place(positions);
+    std::vector<std::pair<std::uint64_t, int>> edges;
+    edges.reserve(3 * triangles.size());
+    double volume = 0;
+    const Double3 origin = positions.empty() ? Double3{} : at(positions[0]);
+    for (const Triangle& t : triangles) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::uint32_t a = place[t[k]], b = place[t[(k + 1) % 3]];
+            if (a == b) continue;
+            edges.push_back({std::uint64_t{std::min(a, b)} << 32 | std::max(a, b), a < b ? 1 : -1});
+        }
+        volume += dot(at(positions[t[0]]) - origin,
+                      cross(at(positions[t[1]]) - origin, at(positions[t[2]]) - origin));
+    }
+    std::sort(edges.begin(), edges.end());
+    for (std::size_t i = 0; i < edges.size();) {
+        int sum = 0;
+        std::size_t j = i;
+        for (; j < edges.size() && edges[j].first == edges[i].first; ++j) sum += edges[j].second;
+        if (sum != 0) return false;
+        i = j;
+    }
+    return volume > 0;
 }
 
 }  // namespace vsplit::studio

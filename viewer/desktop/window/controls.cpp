@@ -6,6 +6,7 @@
 #include <vtkCamera.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
 
@@ -18,40 +19,6 @@ namespace {
 constexpr std::uint32_t kColours[] = {0xE6550D, 0x3182BD, 0x31A354, 0x756BB1,
                                       0xE7298A, 0xE6AB02, 0x1B9E77, 0xA6761D};
 constexpr double kMinBrush = 3, kMaxBrush = 120;
-
-const char* const kHelpText[] = {
-    "                          vsplit studio",
-    "",
-    "MOUSE, over the model",
-    "  CTRL + left drag      smear the selected region's colour",
-    "  SHIFT + left drag     erase",
-    "  left drag             turn",
-    "  middle drag           shift",
-    "  right drag, wheel     nearer, farther",
-    "  left click            selects, after [Part] or [Material]",
-    "MOUSE, over the column at the left",
-    "  click or drag any slider, click any button or region",
-    "",
-    "KEYS",
-    "  F1 or H    this help            Ctrl+Z, Ctrl+Y   undo, redo",
-    "  1 to 9     select region        N                new region",
-    "  [ and ]    brush size           ; and '          brush strength",
-    "  - and =    region's weight      A                automatic weight",
-    "  X Y Z      symmetric brush      K                find weight for [keep]",
-    "  left and right arrow            one level coarser or finer",
-    "  Page Down and Page Up           10 % coarser or finer",
-    "  Home, End  coarsest, full       D                two levels side by side",
-    "  S F W      smooth, flat, edges  E T C Q M        heat: error, weight,",
-    "                                                   curvature, quality, none",
-    "  P G U      select part, material, what is sharp",
-    "  R          refine marked regions in place, at a coarse level",
-    "  Return     apply: bake again    Esc              cancel, or close this",
-    "  Ctrl+S     save marks and weights                Ctrl+O  load them",
-    "  Ctrl+E     export .pmesh        V                whole model in view",
-    "  Ctrl+Q     close (asks, if paint is not saved)",
-    "",
-    "Paint what matters, press Return, drag the level: it stays.",
-};
 
 double error_share(double error, double diagonal) {
     // The slider is logarithmic: from a 10,000th of the diagonal, or less, to a 10th.
@@ -148,11 +115,13 @@ std::vector<Line> StudioWindow::lines() const {
     all.push_back({button("Undo", kUndo, false, painting.can_undo()),
                    button("Redo", kRedo, false, painting.can_redo())});
     all.push_back({title("Bake")});
-    if (rebake_.running())
+    if (busy()) {
+        const double done = search_.running() ? search_.progress() : rebake_.progress();
         all.push_back(
-            {slider(fmt::format("baking {:.0f} %", 100 * rebake_.progress()), kNothing, rebake_.progress()),
+            {slider(fmt::format("{} {:.0f} %", search_.running() ? "searching" : "baking", 100 * done),
+                    kNothing, done),
              button("Cancel", kCancel)});
-    else
+    } else
         all.push_back({button(painting.version() != baked_version_ ? "Apply (Return)" : "Apply: up to date",
                               kApply, painting.version() != baked_version_)});
     all.push_back({button(painting.unsaved() ? "Save *" : "Save", kSave), button("Load", kLoad),
@@ -175,16 +144,7 @@ void StudioWindow::say(const std::string& text) {
 }
 
 void StudioWindow::help() {
-    std::string text;
-    std::size_t longest = 0;
-    for (const char* line : kHelpText) longest = std::max(longest, std::string(line).size());
-    // Of one length, since the sheet centres its lines.
-    for (const char* line : kHelpText) {
-        std::string padded = line;
-        padded.resize(longest, ' ');
-        text += (text.empty() ? "" : "\n") + padded;
-    }
-    sheet_->show(text, window_->GetSize()[0] - Panel::kWidth, window_->GetSize()[1]);
+    sheet_->show(help_text(), window_->GetSize()[0] - Panel::kWidth, window_->GetSize()[1]);
     draw();
 }
 
@@ -323,8 +283,9 @@ void StudioWindow::act(int action, double value) {
         case kApply:
             return apply();
         case kCancel:
-            rebake_.cancel();
-            say("the bake was cancelled");
+            pending_ = kNothing;
+            say("");
+            cancel();
             break;
         case kSave:
             save();
@@ -335,6 +296,32 @@ void StudioWindow::act(int action, double value) {
             return export_all();
         case kHelp:
             return help();
+        case kClose:
+            return asked_to_close();
+        case kOneCoarser:
+            return set_level(level_ > 0 ? level_ - 1 : 0);
+        case kOneFiner:
+            return set_level(level_ + 1);
+        case kTenCoarser:
+        case kTenFiner:
+            return set_level(document_->level_for_ratio(
+                std::clamp(document_->ratio() + (action == kTenFiner ? 0.1 : -0.1), 0.0, 1.0)));
+        case kCoarsest:
+            return set_level(0);
+        case kFinest:
+            return set_level(document_->live().max_level());
+        case kSmallerBrush:
+            brush_pixels_ = std::max(kMinBrush, brush_pixels_ / 1.2);
+            break;
+        case kLargerBrush:
+            brush_pixels_ = std::min(kMaxBrush, brush_pixels_ * 1.2);
+            break;
+        case kWeakerBrush:
+            strength_ = std::max(0.05, strength_ - 0.1);
+            break;
+        case kStrongerBrush:
+            strength_ = std::min(1.0, strength_ + 0.1);
+            break;
         default:
             break;
     }
@@ -351,7 +338,8 @@ void StudioWindow::click_select(int x, int y) {
         say("nothing there");
     else if (what == kPart ? document_->select_component(hit->vertex, number)
                            : document_->select_material(hit->triangle, number))
-        return after_change(what == kPart ? "selected a part" : "selected a material");
+        return after_change(what == kPart ? std::string("selected a part")
+                                          : "selected material " + document_->material_of(hit->triangle));
     refresh_panel();
     draw();
 }
@@ -371,49 +359,19 @@ void StudioWindow::key(const std::string& name) {
         }
         return;
     }
-    const ProgressiveMesh& record = document_->live().state();
-    const auto by_ratio = [&](double step) {
-        const double now =
-            double(triangles_at(record, level_)) / double(std::max<std::size_t>(record.triangles.size(), 1));
-        set_level(document_->level_for_ratio(std::clamp(now + step, 0.0, 1.0)));
-    };
-    static const std::pair<const char*, int> kKeys[] = {
-        {"F1", kHelp},        {"h", kHelp},          {"n", kAddRegion},    {"minus", kLighter},
-        {"equal", kHeavier},  {"plus", kHeavier},    {"a", kAutomatic},    {"x", kMirrorX},
-        {"y", kMirrorY},      {"z", kMirrorZ},       {"k", kKeep},         {"d", kSplit},
-        {"s", kSmooth},       {"f", kFlat},          {"w", kWire},         {"e", kHeatError},
-        {"t", kHeatWeight},   {"c", kHeatCurvature}, {"q", kHeatQuality},  {"m", kHeatNone},
-        {"p", kPart},         {"g", kMaterial},      {"u", kSharp},        {"r", kRefine},
-        {"Return", kApply},   {"KP_Enter", kApply},  {"v", kReset},        {"Control+z", kUndo},
-        {"Control+y", kRedo}, {"Control+s", kSave},  {"Control+o", kLoad}, {"Control+e", kExport}};
     if (sheet_->visible()) {
         sheet_->show("", 1, 1);
-        draw();
+        return draw();
+    }
+    // Caps lock is no reason to do nothing.
+    std::string folded = name;
+    if (folded.size() == 1 || folded.starts_with("Control+"))
+        folded.back() = char(std::tolower(static_cast<unsigned char>(folded.back())));
+    const std::optional<int> action = action_of(folded);
+    if (!action) return;
+    if (*action > kRegion && std::size_t(*action - kRegion) > document_->painting().marks().regions.size())
         return;
-    }
-    for (const auto& [known, action] : kKeys)
-        if (name == known) return act(action, 0);
-    if (name == "Control+q") return asked_to_close();
-    if (name == "Escape") {
-        pending_ = kNothing;
-        if (rebake_.running()) act(kCancel, 0);
-        return say("");
-    }
-    if (name == "Left" && level_ > 0) return set_level(level_ - 1);
-    if (name == "Right") return set_level(level_ + 1);
-    if (name == "Next") return by_ratio(-0.1);
-    if (name == "Prior") return by_ratio(0.1);
-    if (name == "Home") return set_level(0);
-    if (name == "End") return set_level(document_->live().max_level());
-    if (name.size() == 1 && name[0] >= '1' && name[0] <= '9' &&
-        std::size_t(name[0] - '0') <= document_->painting().marks().regions.size())
-        return act(kRegion + (name[0] - '0'), 0);
-    if (name == "bracketleft") brush_pixels_ = std::max(kMinBrush, brush_pixels_ / 1.2);
-    if (name == "bracketright") brush_pixels_ = std::min(kMaxBrush, brush_pixels_ * 1.2);
-    if (name == "semicolon") strength_ = std::max(0.05, strength_ - 0.1);
-    if (name == "apostrophe") strength_ = std::min(1.0, strength_ + 0.1);
-    refresh_panel();
-    draw();
+    act(*action, 0);
 }
 
 }  // namespace vsplit::studio

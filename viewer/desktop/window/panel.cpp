@@ -82,11 +82,13 @@ struct Panel::Parts {
     struct Place {
         Cell cell;
         int x, y, w, h;  // y from the top
+        bool operator==(const Place&) const = default;
     };
     vtkRenderer* renderer = nullptr;
     Boxes boxes;
     std::vector<vtkSmartPointer<vtkTextActor>> texts;
-    std::vector<Place> places;
+    std::vector<Place> places, drawn;  // as they are to be, and as the picture has them
+    int height = 0, drawn_height = 0;
 };
 
 Panel::Panel(vtkRenderer* renderer) : parts_(new Parts) {
@@ -113,10 +115,19 @@ void Panel::set(const std::vector<Line>& lines, int height) {
         y += h + kGap;
     }
     p.boxes.clear();
+    p.height = height;
+    bool all = p.places.size() != p.drawn.size() || height != p.drawn_height;
+    for (std::size_t i = 0; i < p.places.size() && !all; ++i)
+        all = p.places[i].x != p.drawn[i].x || p.places[i].y != p.drawn[i].y ||
+              p.places[i].w != p.drawn[i].w || p.places[i].h != p.drawn[i].h;
+    p.renderer->SetPreserveColorBuffer(!all);
     std::size_t used = 0;
-    for (const Parts::Place& place : p.places) {
+    for (std::size_t i = 0; i < p.places.size(); ++i) {
+        const Parts::Place& place = p.places[i];
+        if (!all && place == p.drawn[i]) continue;
         const Cell& cell = place.cell;
         const double bottom = height - place.y - place.h;
+        if (!all) p.boxes.add(place.x, bottom, place.w, place.h, kBack);
         if (cell.kind == Cell::Kind::kButton)
             p.boxes.add(place.x, bottom, place.w, place.h, !cell.enabled ? kOff : cell.on ? kOn : kFace);
         if (cell.kind == Cell::Kind::kSlider) {
@@ -152,6 +163,11 @@ void Panel::set(const std::vector<Line>& lines, int height) {
     }
     for (; used < p.texts.size(); ++used) p.texts[used]->SetVisibility(false);
     p.boxes.done();
+}
+
+void Panel::drawn() {
+    parts_->drawn = parts_->places;
+    parts_->drawn_height = parts_->height;
 }
 
 std::optional<Panel::Press> Panel::at(int x, int y) const {

@@ -26,6 +26,7 @@ struct Cell {
     bool enabled = true;
     double value = 0;           ///< Of a slider: 0 to 1.
     std::optional<Rgb> swatch;  ///< A square of colour before the text.
+    bool operator==(const Cell&) const = default;
 };
 
 using Line = std::vector<Cell>;
@@ -38,8 +39,12 @@ class Panel {
     explicit Panel(vtkRenderer* renderer);
     ~Panel();
 
-    /// Lays the lines out from the top of `height` pixels.
+    /// Lays the lines out from the top of `height` pixels. What the next picture draws is only what differs
+    /// from what was drawn: a text costs as much as a thousand triangles.
     void set(const std::vector<Line>& lines, int height);
+
+    /// The picture has been made.
+    void drawn();
 
     struct Press {
         int id = 0;

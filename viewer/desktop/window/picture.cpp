@@ -13,21 +13,13 @@
 #include <vtkUnsignedCharArray.h>
 #include <vtkWindowToImageFilter.h>
 
-#include <cstdlib>
+#include <cstdio>
 #include <cstring>
+
+#include "display.hpp"
 
 namespace vsplit::studio {
 namespace {
-
-Error no_display() {
-    return {ErrorCode::kIo, "no display to draw with: set DISPLAY, or run under xvfb-run", Error::kNowhere,
-            0};
-}
-
-bool has_display() {
-    const char* display = std::getenv("DISPLAY");
-    return display && *display;
-}
 
 struct Studio {
     vtkNew<vtkRenderWindow> window;
@@ -64,19 +56,19 @@ bool parse_size(const std::string& text, int& width, int& height) {
 }
 
 Result<std::vector<std::byte>> picture(const Document& document, const Camera& camera, const Look& look) {
-    if (!has_display()) return no_display();
+    if (const Status there = check_display(); !there) return there.error();
     Studio studio(camera.width, camera.height);
     MeshView view(studio.renderer);
     HeatMap map;
-    const std::vector<Rgb> colours = level_colours(document, document.live(), look.heat, &map);
-    view.show(document.live().positions(), document.live().triangles(), colours, look);
+    const LevelPicture level = level_picture(document, document.live(), look.heat, &map);
+    view.show(level.positions, level.triangles, level.colours, look);
     view.legend(look.heat == Heat::kNone ? nullptr : &map, look.heat);
     set_camera(studio.renderer, camera);
     return studio.png();
 }
 
 Result<std::vector<std::byte>> picture_of_points(std::span<const Float3> positions, const Camera& camera) {
-    if (!has_display()) return no_display();
+    if (const Status there = check_display(); !there) return there.error();
     Studio studio(camera.width, camera.height);
     MeshView view(studio.renderer);
     view.show_points(positions, {40, 70, 110}, 2);
@@ -86,7 +78,7 @@ Result<std::vector<std::byte>> picture_of_points(std::span<const Float3> positio
 
 Result<std::vector<std::byte>> picture_of_glb(const std::string& path, const std::string& view, int width,
                                               int height, bool wireframe) {
-    if (!has_display()) return no_display();
+    if (const Status there = check_display(); !there) return there.error();
     Studio studio(width, height);
     vtkNew<vtkGLTFImporter> importer;
     importer->SetFileName(path.c_str());

@@ -31,9 +31,10 @@
 namespace vsplit::studio {
 
 struct Stages::Parts {
-    vtkNew<vtkRenderWindow> window;
+    vtkRenderWindow* window = shell().window;
     vtkNew<vtkRenderer> renderer;
-    vtkNew<vtkRenderWindowInteractor> interactor;
+    vtkRenderWindowInteractor* interactor = shell().interactor;
+    unsigned long observer = 0;
     vtkNew<vtkTextActor> text;
     std::unique_ptr<MeshView> view;
     vtkNew<vtkActor> poles;
@@ -68,13 +69,16 @@ Stages::Stages(int width, int height, const std::string& title) : parts_(new Par
         const char* key = static_cast<vtkRenderWindowInteractor*>(from)->GetKeySym();
         if (key && std::string_view(key) == "Escape") static_cast<Parts*>(self)->stopped = true;
     });
-    p.interactor->AddObserver(vtkCommand::KeyPressEvent, escape);
+    p.observer = p.interactor->AddObserver(vtkCommand::KeyPressEvent, escape);
     p.interactor->Initialize();
 }
 
 Stages::~Stages() {
-    parts_->view.reset();
-    parts_->window->Finalize();
+    Parts& p = *parts_;
+    p.view.reset();
+    p.interactor->RemoveObserver(p.observer);
+    p.interactor->SetInteractorStyle(nullptr);
+    p.window->RemoveRenderer(p.renderer);
 }
 
 void Stages::points(std::span<const std::array<double, 3>> positions) {

@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "../edit/bindings.hpp"
 #include "../edit/rebake.hpp"
 #include "panel.hpp"
 #include "view.hpp"
@@ -22,49 +23,13 @@
 
 namespace vsplit::studio {
 
-/// What cells of the panel do. Regions are kRegion + number.
-enum Action : int {
-    kNothing = 0,
-    kRatio,
-    kError,
-    kRightRatio,
-    kSplit,
-    kSmooth,
-    kFlat,
-    kWire,
-    kHeatNone,
-    kHeatError,
-    kHeatWeight,
-    kHeatCurvature,
-    kHeatQuality,
-    kRefine,
-    kReset,
-    kAddRegion,
-    kLighter,
-    kHeavier,
-    kAutomatic,
-    kKeepShare,
-    kKeepRatio,
-    kKeep,
-    kSize,
-    kStrength,
-    kMirrorX,
-    kMirrorY,
-    kMirrorZ,
-    kPart,
-    kMaterial,
-    kSharp,
-    kSharpDegrees,
-    kUndo,
-    kRedo,
-    kApply,
-    kCancel,
-    kSave,
-    kLoad,
-    kExport,
-    kHelp,
-    kRegion = 1000
+/// The process' one window, and its events. VTK 9.1 keeps a list of its interactors on X from which those
+/// that are gone are not taken, so that there must be one for all that is shown.
+struct Shell {
+    vtkNew<vtkRenderWindow> window;
+    vtkNew<vtkRenderWindowInteractor> interactor;
 };
+Shell& shell();
 
 /// A level of the document's record in a viewport.
 struct Pane {
@@ -77,6 +42,9 @@ struct Pane {
 class StudioWindow {
   public:
     StudioWindow(std::unique_ptr<Document> document, const WindowOptions& options);
+    ~StudioWindow();
+    StudioWindow(const StudioWindow&) = delete;
+    StudioWindow& operator=(const StudioWindow&) = delete;
 
     void run();
     /// Measures frames, strokes and bakes; prints one line each.
@@ -107,7 +75,11 @@ class StudioWindow {
     void show_pane(Pane& pane, std::size_t level);
     void dab(int x, int y, bool erase);
     void click_select(int x, int y);
-    std::optional<Hit> pick_at(int x, int y) const;
+    std::optional<Hit> pick_at(int x, int y);
+    bool eye_outside() const;
+    /// Draws only what the stroke has changed since the last picture, over it.
+    void draw_stroke();
+    void draw_at_full_level();
     bool in_left_pane(int x) const;
     int left_width() const;
     void move();
@@ -122,19 +94,28 @@ class StudioWindow {
     void apply();
     void take_bake();
     void keep();
+    void take_search();
+    void cancel();
+    /// A bake or a search is going on.
+    bool busy() const { return rebake_.running() || search_.running(); }
+    /// The panel alone, beside the picture that is there.
+    void draw_panel();
     void say(const std::string& text);
     void help();
 
     std::unique_ptr<Document> document_;
     WindowOptions options_;
-    vtkNew<vtkRenderWindow> window_;
-    vtkNew<vtkRenderWindowInteractor> interactor_;
+    vtkRenderWindow* window_ = shell().window;
+    vtkRenderWindowInteractor* interactor_ = shell().interactor;
     vtkNew<vtkRenderer> panel_renderer_, sheet_renderer_;
     std::unique_ptr<Panel> panel_;
     std::unique_ptr<Sheet> sheet_;
     vtkNew<vtkTextActor> status_;
     Pane left_, right_;
     Rebake rebake_;
+    WeightSearch search_;
+    bool first_pending_ = false;  // nothing of the bake that runs was shown yet
+    double progress_drawn_ = 0;
     std::uint64_t baked_version_ = 0;  // of the paint, in the record
 
     Look look_;
@@ -151,7 +132,8 @@ class StudioWindow {
     int dragging_ = kNothing;  // a slider
     bool moving_ = false, question_ = false;
     double moved_at_ = 0;
-    double budget_ = 30000;  // triangles that a moving picture may have
+    double budget_ = 150000;  // triangles that a moving picture may have
+    bool patchable_ = false;  // the picture that is there can take a stroke's patches
     bool shown_coarse_ = false, panel_stale_ = true;
     std::string message_;
 };

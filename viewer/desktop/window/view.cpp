@@ -9,7 +9,6 @@
 #include <vtkLight.h>
 #include <vtkLookupTable.h>
 #include <vtkNew.h>
-#include <vtkPointData.h>
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
 #include <vtkPolyDataMapper.h>
@@ -18,46 +17,33 @@
 #include <vtkScalarBarActor.h>
 #include <vtkTextProperty.h>
 #include <vtkTypeInt32Array.h>
-#include <vtkUnsignedCharArray.h>
 
 #include <cstring>
+
+#include "mesh_prop.hpp"
 
 namespace vsplit::studio {
 
 struct MeshView::Parts {
     vtkRenderer* renderer = nullptr;
-    vtkNew<vtkPolyData> data;
-    vtkNew<vtkPoints> points;
-    vtkNew<vtkFloatArray> places, normals;
-    vtkNew<vtkUnsignedCharArray> colours;
-    vtkNew<vtkTypeInt32Array> offsets, corners;
-    vtkNew<vtkCellArray> cells;
-    vtkNew<vtkPolyDataMapper> mapper;
-    vtkNew<vtkActor> actor;
+    vtkNew<MeshProp> mesh;
     vtkNew<vtkScalarBarActor> bar;
     vtkNew<vtkLookupTable> table;
-    std::vector<Float3> scratch;
+    std::vector<Float3> normals;
+    // Points alone.
+    vtkNew<vtkPolyData> data;
+    vtkNew<vtkPolyDataMapper> mapper;
+    vtkNew<vtkActor> actor;
 };
 
 MeshView::MeshView(vtkRenderer* renderer) : parts_(new Parts) {
     Parts& p = *parts_;
     p.renderer = renderer;
-    p.places->SetNumberOfComponents(3);
-    p.normals->SetNumberOfComponents(3);
-    p.normals->SetName("Normals");
-    p.colours->SetNumberOfComponents(3);
-    p.colours->SetName("Colours");
-    p.points->SetData(p.places);
     p.mapper->SetInputData(p.data);
     p.actor->SetMapper(p.mapper);
-    vtkProperty* property = p.actor->GetProperty();
-    property->SetAmbient(0.08);
-    property->SetDiffuse(0.92);
-    property->SetSpecular(0.12);
-    property->SetSpecularPower(25);
-    property->SetEdgeColor(0.12, 0.16, 0.22);
-    property->SetLineWidth(1);
+    p.actor->VisibilityOff();
     renderer->AddActor(p.actor);
+    renderer->AddViewProp(p.mesh);
     p.bar->SetLookupTable(p.table);
     p.bar->SetNumberOfLabels(4);
     p.bar->SetOrientationToVertical();
@@ -79,59 +65,43 @@ MeshView::MeshView(vtkRenderer* renderer) : parts_(new Parts) {
 
 MeshView::~MeshView() {
     parts_->renderer->RemoveActor(parts_->actor);
+    parts_->renderer->RemoveViewProp(parts_->mesh);
     parts_->renderer->RemoveActor2D(parts_->bar);
 }
 
 void MeshView::show(std::span<const Float3> positions, std::span<const Triangle> triangles,
                     const std::vector<Rgb>& colours, const Look& look) {
     Parts& p = *parts_;
-    const auto n = vtkIdType(positions.size()), m = vtkIdType(triangles.size());
-    p.places->SetNumberOfTuples(n);
-    std::memcpy(p.places->GetPointer(0), positions.data(), positions.size_bytes());
-    if (p.offsets->GetNumberOfValues() != m + 1) {
-        p.offsets->SetNumberOfValues(m + 1);
-        for (vtkIdType i = 0; i <= m; ++i) p.offsets->SetValue(i, int(3 * i));
-        p.offsets->Modified();
-    }
-    p.corners->SetNumberOfValues(3 * m);
-    std::memcpy(p.corners->GetPointer(0), triangles.data(), triangles.size_bytes());
-    p.corners->Modified();
-    p.cells->SetData(p.offsets, p.corners);
-    p.cells->Modified();
-    p.data->SetPoints(p.points);
-    p.data->SetVerts(nullptr);
-    p.data->SetPolys(p.cells);
-    if (look.flat) {
-        p.data->GetPointData()->SetNormals(nullptr);
-        p.actor->GetProperty()->SetInterpolationToFlat();
-    } else {
-        smooth_normals(positions, triangles, p.scratch);
-        p.normals->SetNumberOfTuples(n);
-        std::memcpy(p.normals->GetPointer(0), p.scratch.data(), p.scratch.size() * sizeof(Float3));
-        p.normals->Modified();
-        p.data->GetPointData()->SetNormals(p.normals);
-        p.actor->GetProperty()->SetInterpolationToGouraud();
-    }
-    p.actor->GetProperty()->SetEdgeVisibility(look.wireframe);
-    p.places->Modified();
-    p.points->Modified();
-    p.data->Modified();
-    recolour(colours);
+    p.actor->VisibilityOff();
+    p.mesh->VisibilityOn();
+    p.normals.clear();
+    if (!look.flat) smooth_normals(positions, triangles, p.normals);
+    p.mesh->set_vertices(positions, p.normals);
+    p.mesh->set_triangles(triangles);
+    p.mesh->set_patch({});
+    p.mesh->set_colours(colours);
+    p.mesh->edges = look.wireframe;
+    p.mesh->quick = look.quick;
+    p.mesh->cull = look.closed;
 }
 
 void MeshView::recolour(const std::vector<Rgb>& colours) {
-    Parts& p = *parts_;
-    p.colours->SetNumberOfTuples(vtkIdType(colours.size()));
-    if (!colours.empty()) std::memcpy(p.colours->GetPointer(0), colours.data(), 3 * colours.size());
-    p.colours->Modified();
-    p.data->GetPointData()->SetScalars(p.colours);
+    parts_->mesh->set_colours(colours);
+}
+
+void MeshView::patch(std::span<const Triangle> triangles) {
+    parts_->mesh->set_patch(triangles);
 }
 
 void MeshView::show_points(std::span<const Float3> positions, Rgb colour, float size) {
     Parts& p = *parts_;
     const auto n = vtkIdType(positions.size());
-    p.places->SetNumberOfTuples(n);
-    std::memcpy(p.places->GetPointer(0), positions.data(), positions.size_bytes());
+    vtkNew<vtkFloatArray> places;
+    places->SetNumberOfComponents(3);
+    places->SetNumberOfTuples(n);
+    if (n > 0) std::memcpy(places->GetPointer(0), positions.data(), positions.size_bytes());
+    vtkNew<vtkPoints> points;
+    points->SetData(places);
     vtkNew<vtkTypeInt32Array> offsets, corners;
     offsets->SetNumberOfValues(n + 1);
     corners->SetNumberOfValues(n);
@@ -139,15 +109,12 @@ void MeshView::show_points(std::span<const Float3> positions, Rgb colour, float 
     for (vtkIdType i = 0; i < n; ++i) corners->SetValue(i, int(i));
     vtkNew<vtkCellArray> cells;
     cells->SetData(offsets, corners);
-    p.data->SetPoints(p.points);
-    p.data->SetPolys(nullptr);
+    p.data->SetPoints(points);
     p.data->SetVerts(cells);
-    p.data->GetPointData()->SetNormals(nullptr);
     p.actor->GetProperty()->SetPointSize(size);
-    p.places->Modified();
-    p.points->Modified();
-    p.data->Modified();
-    recolour(std::vector<Rgb>(positions.size(), colour));
+    p.actor->GetProperty()->SetColor(colour[0] / 255.0, colour[1] / 255.0, colour[2] / 255.0);
+    p.actor->VisibilityOn();
+    p.mesh->VisibilityOff();
 }
 
 void MeshView::legend(const HeatMap* map, Heat heat) {

@@ -18,6 +18,8 @@ struct Look {
     bool flat = false;
     bool wireframe = false;  ///< Edges over the surface.
     Heat heat = Heat::kNone;
+    bool quick = false;   ///< Light at vertices only.
+    bool closed = false;  ///< Nobody sees the surface from inside: it is, and the eye is not.
 };
 
 /// One mesh, or a cloud of points. Copies what it shows.
@@ -33,6 +35,9 @@ class MeshView {
     void show_points(std::span<const Float3> positions, Rgb colour, float size);
     /// Colours alone, of the vertices shown.
     void recolour(const std::vector<Rgb>& colours);
+    /// The next pictures draw only these of the triangles shown, over what is there: the renderer and what
+    /// lies over it must leave colours and depths as they are. None: all again.
+    void patch(std::span<const Triangle> triangles);
     /// The bar that says what colours mean; nothing hides it.
     void legend(const HeatMap* map, Heat heat);
 

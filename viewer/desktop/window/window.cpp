@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 #include <vtkCallbackCommand.h>
+#include <vtkCamera.h>
 #include <vtkInteractorStyleTrackballCamera.h>
 #include <vtkObjectFactory.h>
 #include <vtkRendererCollection.h>
@@ -11,7 +12,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdlib>
 
 #include "studio_window.hpp"
 
@@ -19,7 +19,9 @@ namespace vsplit::studio {
 namespace {
 
 constexpr double kSettle = 0.25;  // seconds without motion until the full picture
-constexpr double kFrame = 0.026;  // seconds that a moving picture may take
+/// So many triangles look the same whether light falls on vertices or on pixels.
+constexpr std::size_t kSmoothEnough = 20000;
+constexpr double kFrame = 0.029;  // seconds that a moving picture may take
 
 /// The trackball, but for what belongs to panel, brush and sliders.
 class Style : public vtkInteractorStyleTrackballCamera {
@@ -93,6 +95,22 @@ double seconds_now() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
+Shell& shell() {
+    static Shell one;
+    return one;
+}
+
+StudioWindow::~StudioWindow() {
+    rebake_.cancel();
+    search_.cancel();
+    for (Pane* pane : {&left_, &right_}) pane->view.reset();
+    window_->Finalize();
+    for (vtkRenderer* renderer :
+         {panel_renderer_.Get(), left_.renderer.Get(), right_.renderer.Get(), sheet_renderer_.Get()})
+        window_->RemoveRenderer(renderer);
+    interactor_->SetInteractorStyle(nullptr);
+}
+
 StudioWindow::StudioWindow(std::unique_ptr<Document> document, const WindowOptions& options)
     : document_(std::move(document)), options_(options) {
     window_->SetSize(options.width, options.height);
@@ -113,6 +131,8 @@ StudioWindow::StudioWindow(std::unique_ptr<Document> document, const WindowOptio
     }
     right_.renderer->SetActiveCamera(left_.renderer->GetActiveCamera());
     sheet_renderer_->SetLayer(1);
+    // The panes' depths stay below it, for strokes.
+    sheet_renderer_->PreserveDepthBufferOn();
     sheet_renderer_->InteractiveOff();
     window_->AddRenderer(sheet_renderer_);
     status_->GetTextProperty()->SetFontSize(14);
@@ -170,10 +190,23 @@ void StudioWindow::show_pane(Pane& pane, std::size_t level) {
     shown_coarse_ = shown_coarse_ || now < level;
     pane.live->go_to(now);
     if (refined_ && &pane == &left_ && !moving_) {
-        const Mesh mesh = document_->refined_in_place();
+        const Result<Mesh> made = document_->refined_in_place();
+        if (!made) {
+            refined_ = false;
+            say(made.error().describe());
+            return show_pane(pane, level);
+        }
+        const Mesh& mesh = *made;
         std::vector<Rgb> colours(mesh.positions.size());
         for (std::uint32_t v = 0; v < colours.size(); ++v) colours[v] = plain_colour(*document_, v);
-        pane.view->show(mesh.positions, mesh.triangles, colours, look_);
+        if (document_->placed()) {
+            const Shown shown = document_->show(mesh.positions, mesh.triangles, mesh.groups);
+            std::vector<Rgb> theirs;
+            for (const std::uint32_t v : shown.vertex_of) theirs.push_back(colours[v]);
+            pane.view->show(shown.positions, shown.triangles, theirs, look_);
+        } else {
+            pane.view->show(mesh.positions, mesh.triangles, colours, look_);
+        }
         pane.view->legend(nullptr, Heat::kNone);
         pane.caption->SetInput(
             fmt::format("{} triangles: marked regions refined in place", mesh.triangles.size()).c_str());
@@ -182,10 +215,13 @@ void StudioWindow::show_pane(Pane& pane, std::size_t level) {
     HeatMap map;
     // Heat takes longer than a frame: while things move, what is known is regions.
     const Heat heat = moving_ && look_.heat == Heat::kError ? Heat::kNone : look_.heat;
-    const std::vector<Rgb> colours = level_colours(*document_, *pane.live, heat, &map);
+    const LevelPicture level_shown = level_picture(*document_, *pane.live, heat, &map);
     Look look = look_;
+    look.heat = heat;
+    look.quick = moving_ && now > 0 && pane.live->triangles().size() > kSmoothEnough;
+    look.closed = document_->closed() && eye_outside();
     if (moving_ && pane.live->triangles().size() > 20000) look.wireframe = false;
-    pane.view->show(pane.live->positions(), pane.live->triangles(), colours, look);
+    pane.view->show(level_shown.positions, level_shown.triangles, level_shown.colours, look);
     pane.view->legend(heat == Heat::kNone ? nullptr : &map, heat);
     const ProgressiveMesh& record = pane.live->state();
     const double ratio =
@@ -196,15 +232,71 @@ void StudioWindow::show_pane(Pane& pane, std::size_t level) {
                                .c_str());
 }
 
+bool StudioWindow::eye_outside() const {
+    const double* eye = left_.renderer->GetActiveCamera()->GetPosition();
+    const Box& box = document_->box();
+    return eye[0] < box.low.x || eye[0] > box.high.x || eye[1] < box.low.y || eye[1] > box.high.y ||
+           eye[2] < box.low.z || eye[2] > box.high.z;
+}
+
+void StudioWindow::draw_stroke() {
+    // A patch needs the picture under it: of this level, in the regions' colours, from here.
+    if (!patchable_) {
+        move();
+        draw_at_full_level();
+        patchable_ = look_.heat == Heat::kNone;
+        document_->take_repainted();
+        return;
+    }
+    const std::vector<Triangle> triangles = document_->take_repainted();
+    move();
+    if (triangles.empty()) return;
+    left_.view->recolour(level_picture(*document_, *left_.live, Heat::kNone).colours);
+    left_.view->patch(triangles);
+    left_.renderer->PreserveColorBufferOn();
+    left_.renderer->PreserveDepthBufferOn();
+    left_.caption->VisibilityOff();
+    for (vtkRenderer* other : {right_.renderer.Get(), sheet_renderer_.Get(), panel_renderer_.Get()})
+        other->SetDraw(false);
+    window_->Render();
+    sheet_renderer_->SetDraw(true);
+    right_.renderer->SetDraw(split_);
+    left_.caption->VisibilityOn();
+    left_.renderer->PreserveColorBufferOff();
+    left_.renderer->PreserveDepthBufferOff();
+    left_.view->patch({});
+}
+
+void StudioWindow::draw_panel() {
+    for (const Pane* pane : {&left_, &right_}) pane->renderer->SetDraw(false);
+    sheet_renderer_->SetDraw(false);
+    panel_renderer_->SetDraw(panel_stale_);
+    window_->Render();
+    if (panel_stale_) panel_->drawn();
+    panel_stale_ = false;
+    left_.renderer->SetDraw(true);
+    right_.renderer->SetDraw(split_);
+    sheet_renderer_->SetDraw(true);
+}
+
+void StudioWindow::draw_at_full_level() {
+    const double budget = budget_;
+    budget_ = 1e12;
+    draw();
+    budget_ = budget;
+}
+
 void StudioWindow::draw() {
+    patchable_ = false;
     shown_coarse_ = false;
     const double start = seconds_now();
     show_pane(left_, level_);
     if (split_) show_pane(right_, document_->level_for_ratio(right_ratio_));
     // What the panel drew stays in the frame buffer: thirty texts are a third of a frame.
     panel_renderer_->SetDraw(panel_stale_);
-    panel_stale_ = false;
     window_->Render();
+    if (panel_stale_) panel_->drawn();
+    panel_stale_ = false;
     if (!moving_) return;
     window_->WaitForCompletion();
     const double took = seconds_now() - start;
@@ -229,20 +321,22 @@ void StudioWindow::camera_moves() {
 
 void StudioWindow::tick() {
     take_bake();
-    if (rebake_.running()) refresh_panel();
+    take_search();
     if (moving_ && !stroke_ && dragging_ == kNothing && seconds_now() - moved_at_ > kSettle) {
         moving_ = false;
         draw();
-    } else if (rebake_.running()) {
-        draw();
+        document_->prepare();
+    } else if (busy() && seconds_now() - progress_drawn_ > 0.1) {
+        progress_drawn_ = seconds_now();
+        refresh_panel();
+        draw_panel();
     }
 }
 
-std::optional<Hit> StudioWindow::pick_at(int x, int y) const {
+std::optional<Hit> StudioWindow::pick_at(int x, int y) {
     if (!in_left_pane(x)) return std::nullopt;
     const Camera camera = camera_of(left_.renderer, left_width(), window_->GetSize()[1]);
-    return pick(document_->live().positions(), document_->live().triangles(),
-                ray_through(camera, x - Panel::kWidth, y));
+    return document_->pick(ray_through(camera, x - Panel::kWidth, y));
 }
 
 void StudioWindow::dab(int x, int y, bool erase) {
@@ -285,8 +379,7 @@ bool StudioWindow::press(int x, int y, bool paint, bool erase) {
     last_x_ = x;
     last_y_ = y;
     dab(x, y, erase);
-    move();
-    draw();
+    draw_stroke();
     return true;
 }
 
@@ -303,8 +396,7 @@ bool StudioWindow::drag(int x, int y) {
         dab(int(last_x_ + dx * i / steps), int(last_y_ + dy * i / steps), erase_);
     last_x_ = x;
     last_y_ = y;
-    move();
-    draw();
+    draw_stroke();
     return true;
 }
 
@@ -340,22 +432,17 @@ void StudioWindow::run() {
         interactor_);
     recover();
     draw();
-    interactor_->CreateRepeatingTimer(50);
+    document_->prepare();
+    interactor_->CreateRepeatingTimer(15);
     interactor_->Start();
 }
 
-bool run_window(std::unique_ptr<Document> document, const WindowOptions& options) {
-    const char* display = std::getenv("DISPLAY");
-    if (!display || !*display) {
-        fmt::print(stderr, "vsplit: no display: set DISPLAY, or use --script\n");
-        return false;
-    }
+void run_window(std::unique_ptr<Document> document, const WindowOptions& options) {
     StudioWindow window(std::move(document), options);
     if (options.bench)
         window.bench();
     else
         window.run();
-    return true;
 }
 
 }  // namespace vsplit::studio

@@ -17,7 +17,7 @@ struct WindowOptions {
     std::string marks;   ///< Where they came from, and are saved to; empty: beside the model.
 };
 
-/// Runs until the window is closed. False if there is no display, which is said on stderr.
-bool run_window(std::unique_ptr<Document> document, const WindowOptions& options);
+/// Runs until the window is closed. There must be a display (check_display()).
+void run_window(std::unique_ptr<Document> document, const WindowOptions& options);
 
 }  // namespace vsplit::studio

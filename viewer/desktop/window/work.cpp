@@ -70,8 +70,10 @@ void StudioWindow::load() {
 }
 
 void StudioWindow::export_all() {
-    const std::string path = beside(".studio.pmesh");
-    auto bytes = document_->encode(".pmesh", 1);
+    // A scene goes out with its nodes and materials.
+    const std::string extension = document_->source().scene ? ".glb" : ".pmesh";
+    const std::string path = beside(".studio" + extension);
+    auto bytes = document_->encode(extension, 1);
     if (!bytes) return say(bytes.error().describe());
     if (write(path, *bytes, true))
         say(document_->painting().version() == baked_version_
@@ -81,46 +83,72 @@ void StudioWindow::export_all() {
 }
 
 void StudioWindow::apply() {
-    bake::CollapseOptions options = document_->options();
-    rebake_.start(document_->painted(), options);
+    cancel();
+    first_pending_ = true;
+    start_rebake(rebake_, document_->painted(), document_->options());
     baked_version_ = document_->painting().version();
     say("baking");
     draw();
 }
 
 void StudioWindow::take_bake() {
-    auto result = rebake_.take();
-    if (!result) return;
-    if (!*result) {
-        if ((*result).error().code == ErrorCode::kCancelled) return;
+    auto taken = rebake_.take();
+    if (!taken) return;
+    if (!taken->result) {
+        first_pending_ = false;
         baked_version_ = ~std::uint64_t{0};
-        return say((*result).error().describe());
+        say(taken->result.error().describe());
+        return draw();
     }
+    first_pending_ = false;
     const double ratio = document_->ratio();
-    document_->adopt(std::move((*result)->mesh));
+    document_->adopt(std::move(taken->result->mesh));
     left_.live = std::make_unique<LiveMesh>(document_->live());
     if (split_) right_.live = std::make_unique<LiveMesh>(document_->live());
     level_ = document_->level_for_ratio(ratio);
     document_->go_to(level_);
-    say(rebake_.running() ? "baked; measuring errors" : "baked: what you see is the new sequence");
+    say(taken->last ? "baked: what you see is the new sequence" : "baked; measuring errors");
     draw();
 }
 
+void StudioWindow::cancel() {
+    if (search_.running()) {
+        search_.cancel();
+        say("the search was cancelled");
+    }
+    if (!rebake_.running()) return;
+    rebake_.cancel();
+    // The sequence as recorded may be there already: it stays, its errors are estimates.
+    if (first_pending_) baked_version_ = ~std::uint64_t{0};
+    say(first_pending_ ? "the bake was cancelled" : "measuring was cancelled: errors are estimates");
+    first_pending_ = false;
+}
+
 void StudioWindow::keep() {
+    cancel();
     const std::string name = document_->painting().marks().regions[region_ - 1].name;
-    const bake::Keep wish{name, keep_share_, keep_ratio_};
-    bake::Marks marks = document_->painting().marks();
-    say("searching the weight");
-    window_->Render();
-    const auto found = bake::find_weights(document_->source().mesh, marks, {&wish, 1}, document_->options());
-    if (!found) {
-        say(found.error().describe());
+    start_search(search_, document_->source().mesh, document_->painting().marks(),
+                 {name, keep_share_, keep_ratio_}, document_->options());
+    say(fmt::format("searching the weight that keeps {:.0f} % of {} at {:.0f} %", 100 * keep_share_, name,
+                    100 * keep_ratio_));
+    draw();
+}
+
+void StudioWindow::take_search() {
+    const auto done = search_.take();
+    if (!done) return;
+    if (!done->found) {
+        say(done->found.error().describe());
         return draw();
     }
-    document_->painting().region(region_).weight = found->front().weight;
+    const bake::KeepResult& found = done->found->front();
+    // Regions are never removed, but their marks may have been loaded anew meanwhile.
+    const auto& regions = document_->painting().marks().regions;
+    for (std::size_t r = 0; r < regions.size(); ++r)
+        if (regions[r].name == done->wish.region) document_->painting().region(r + 1).weight = found.weight;
     baked_version_ = ~std::uint64_t{0};
-    after_change(fmt::format("{}: weight {:.4g} keeps {:.1f} %", name, found->front().weight,
-                             100 * found->front().share));
+    after_change(fmt::format("{}: weight {:.4g} keeps {:.1f} % at {:.0f} %; Return bakes with it",
+                             done->wish.region, found.weight, 100 * found.share, 100 * done->wish.ratio));
 }
 
 void StudioWindow::asked_to_close() {
@@ -190,7 +218,7 @@ void StudioWindow::bench() {
         window_->WaitForCompletion();
         fmt::print("{:<34} {:7.1f} ms\n", what, 1e3 * (seconds_now() - start));
     };
-    wait("bake again, new sequence shown", [&] { return rebake_.first_pending(); });
+    wait("bake again, new sequence shown", [&] { return first_pending_; });
     wait("the same, errors measured", [&] { return rebake_.running(); });
     fmt::print("a moving picture has at most {:.0f} triangles here\n", budget_);
     std::error_code ignored;

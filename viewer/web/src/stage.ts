@@ -7,6 +7,8 @@ import { ACESFilmicToneMapping, Box3, Color, DirectionalLight, HemisphereLight, 
 export function makeRenderer(canvas: HTMLCanvasElement | undefined, options: { preserve?: boolean } = {}): WebGLRenderer {
     const renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true, powerPreference: 'high-performance', preserveDrawingBuffer: options.preserve });
     renderer.setClearColor(new Color(0, 0, 0), 0);
+    // Asking for errors waits until the shaders are linked.
+    renderer.debug.checkShaderErrors = false;
     renderer.toneMapping = ACESFilmicToneMapping;
     renderer.toneMappingExposure = 1.05;
     return renderer;

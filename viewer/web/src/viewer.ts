@@ -20,6 +20,8 @@ const query = new URLSearchParams(location.search);
 const canvas = element<HTMLCanvasElement>('view');
 const { scene, camera } = makeScene();
 let renderer: ReturnType<typeof makeRenderer>;
+// A context of GL takes as long as the scripts did: a task of its own.
+await new Promise((next) => setTimeout(next));
 try {
     renderer = makeRenderer(canvas);
 } catch {
@@ -33,7 +35,7 @@ const timer = new Timer();
 
 let model: VsplitModel | undefined;
 let mixer: AnimationMixer | undefined;
-let framed = false;
+let framed = false, touched = false;
 /** Of the camera's height, what the controls leave free. */
 let share = 1, fitted = 1;
 let heats: Partial<Record<string, Heat>> = {};
@@ -44,10 +46,11 @@ let lastTarget = '';
 
 // What tests and the curious read.
 const state = { ready: false, level: undefined as unknown, progress: undefined as Progress | undefined, error: undefined as VsplitError | undefined, info: undefined as unknown, firstTrianglesAt: 0, longestUpdate: 0, longestFrame: 0, target: undefined as Target | undefined };
-Object.assign(window, { vsplit: { state, get model() { return model; }, renderer, scene, camera } });
+Object.assign(window, { vsplit: { state, get model() { return model; }, renderer, scene, camera, open, stop: () => { mixer?.setTime(0); mixer = undefined; } } });
 
 const bytesText = (bytes: number) => (bytes < 1e6 ? `${(bytes / 1e3).toFixed(0)} kB` : `${(bytes / 1e6).toFixed(2)} MB`);
-const count = (n: number) => n.toLocaleString('en');
+/** toLocaleString() takes 20 ms the first time. */
+const count = (n: number) => String(n).replace(/\B(?=(\d{3})+$)/g, ',');
 
 /** The slider's ends are the base mesh and all; between them each step is the same factor. */
 const sliderRatio = () => {
@@ -114,7 +117,7 @@ function open(source: string | File, name: string) {
     heats = {};
     plain = new Map();
     mixer = undefined;
-    framed = false;
+    framed = touched = false;
     lastTarget = '';
     Object.assign(state, { ready: false, level: undefined, progress: undefined, error: undefined, info: undefined, firstTrianglesAt: 0, longestUpdate: 0, longestFrame: 0 });
     element('notice').hidden = element('empty').hidden = true;
@@ -142,6 +145,7 @@ function open(source: string | File, name: string) {
         showProgress(progress);
         wake();
     });
+    opened.addEventListener('bounds', () => { if (model === opened && framed && !touched) frameAll(); });
     opened.addEventListener('level', ({ level }) => {
         state.level = level;
         if (level && level.triangles > 0 && state.firstTrianglesAt === 0) state.firstTrianglesAt = state.progress?.fed ?? 1;
@@ -149,7 +153,12 @@ function open(source: string | File, name: string) {
         text('error', level!.error === 0 ? '0' : Number(level!.error.toPrecision(3)).toString());
         if (plain.size === 0) dress();
     });
-    opened.ready.then(() => {
+    opened.ready.then(async () => {
+        // Shaders are compiled beside the page: the first frame would wait for them.
+        opened.visible = false;
+        await renderer.compileAsync(opened, camera, scene);
+        opened.visible = true;
+        if (model !== opened) return;
         state.ready = true;
         if (opened.info) start(opened);
         else frameAll();
@@ -279,7 +288,7 @@ element('fold').addEventListener('click', () => {
     resize();
 });
 orbit.addEventListener('change', wake);
-orbit.addEventListener('start', wake);
+orbit.addEventListener('start', () => { touched = true; wake(); });
 new ResizeObserver(resize).observe(canvas);
 
 let current: { source: string | File; name: string } | undefined;

@@ -45,7 +45,7 @@ struct ScenePart {
 };
 
 /// A node of the default scene that shows a part.
-struct ScenePlace {
+struct PlacedPart {
     std::uint32_t part = 0;  ///< In Scene::parts.
     /// From the mesh's coordinates as the file has them to the world, column-major; of a skinned one, too,
     /// the node's.
@@ -70,7 +70,7 @@ struct Scene {
     std::vector<std::uint32_t> part_of;  ///< Per vertex of `mesh`, its number in `parts`.
     std::vector<ScenePart> parts;
     std::vector<ScenePrimitive> primitives;
-    std::vector<ScenePlace> places;  ///< Depth first. Not known of a progressive GLB.
+    std::vector<PlacedPart> places;  ///< Depth first. Not known of a progressive GLB.
     double radius =
         0;  ///< Of a ball around all places of all parts, in the world. About right for skinned ones.
     /// Errors of `mesh` times this are at least what they are anywhere in the world; from 1 to 2.
@@ -98,6 +98,29 @@ Result<Mesh> placed_mesh(const Scene& scene, std::uint64_t max_triangles = std::
 
 /// The poses of what placed_mesh() gives.
 PoseSets placed_poses(const Scene& scene);
+
+/// Where a node of the scene that the document shows has a part.
+struct ScenePlace {
+    std::uint32_t part = 0;
+    std::array<double, 16> matrix{};  ///< From coordinates of Scene::mesh to the world, column by column.
+};
+
+/// All places in the order of the nodes, parents first; of a skinned part, where its first joint puts it.
+/// Instances of EXT_mesh_gpu_instancing count as one.
+std::vector<ScenePlace> scene_places(const Scene& scene);
+
+/// What a primitive looks like, as far as a preview needs it.
+struct SceneMaterial {
+    std::uint32_t number = 0xFFFFFFFFu;  ///< In the document; the default if the primitive names none.
+    std::string name;                    ///< May be empty.
+    std::array<float, 4> base_color{1, 1, 1, 1};  ///< Linear; times the image, if there is one.
+    std::span<const std::byte> image{};  ///< PNG, JPEG or another format, as stored; of the scene's document.
+    std::uint32_t image_number = 0xFFFFFFFFu;
+    std::uint32_t texcoord = 0;  ///< The set that the image is looked up by.
+};
+
+/// One for each of Scene::primitives. Images outside of the document are not read.
+std::vector<SceneMaterial> scene_materials(const Scene& scene);
 
 /// A scene of one node around a mesh that came without one, as from a .pmesh: a primitive and a plain
 /// material a group, attributes as floats; where there are joints, a skin of as many nodes that stand where

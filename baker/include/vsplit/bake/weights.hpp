@@ -90,8 +90,8 @@ struct Keep {
 /// "REGION=95%@40%"; nothing if it is not that.
 std::optional<Keep> parse_keep(std::string_view text);
 
-/// For each vertex of the full mesh of `record`, the vertex of `input` that it is, by place. Where several
-/// vertices of the input are at one place, they are taken in the order of the input.
+/// For each vertex of the full mesh of `record`, the vertex of `input` that it is, by group and place. Where
+/// several vertices of one group are at one place, they are taken in the order of the input.
 std::vector<std::uint32_t> record_origins(const Mesh& input, const ProgressiveMesh& record);
 
 /// How many of the record's vertices that are in region `number` are there at `level`.

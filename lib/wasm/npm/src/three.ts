@@ -11,7 +11,7 @@ import { VsplitError } from './errors.js';
 import { GlbFront, parseGlbFront, plainGlb } from './glb.js';
 import type { ArrayPatch, Level, MeshPatch, Progress, StreamInfo, Target } from './messages.js';
 import { VsplitSession, type SessionOptions } from './session.js';
-import { GpuCopy, LiveArray, PatchCursor } from './three_buffers.js';
+import { GpuCopy, LiveArray, PatchCursor, StreamedAttribute } from './three_buffers.js';
 
 export { VsplitError } from './errors.js';
 export type { Level, Progress, StreamInfo, Target } from './messages.js';
@@ -29,7 +29,8 @@ export interface ModelOptions extends SessionOptions {
 
 const kNames: Record<string, string> = { NORMAL: 'normal', TANGENT: 'tangent', TEXCOORD_0: 'uv', TEXCOORD_1: 'uv1', TEXCOORD_2: 'uv2', TEXCOORD_3: 'uv3', COLOR_0: 'color', JOINTS_0: 'skinIndex', WEIGHTS_0: 'skinWeight' };
 
-const kLeastFrameBytes = 256 * 1024, kMostFrameBytes = 16 * 1024 * 1024;
+/** More than that at once may have to wait until the GPU has taken what came before. */
+const kLeastFrameBytes = 256 * 1024, kMostFrameBytes = 2 * 1024 * 1024;
 
 /** One group of triangles, and the objects that draw it. */
 interface Part {
@@ -44,9 +45,9 @@ interface Part {
 
 /**
  * A mesh, or a scene, whose triangles come and go. Call update() once a frame, before the renderer draws.
- * Events: 'progress', 'level', 'error' (each with its value as a property of that name).
+ * Events: 'progress', 'level', 'error' (each with its value as a property of that name), 'bounds' (they are others than before).
  */
-export class VsplitModel extends Group<{ progress: { progress: Progress }; level: { level: Level }; error: { error: VsplitError } } & import('three').Object3DEventMap> {
+export class VsplitModel extends Group<{ progress: { progress: Progress }; level: { level: Level }; bounds: {}; error: { error: VsplitError } } & import('three').Object3DEventMap> {
     readonly isVsplitModel = true;
     info!: StreamInfo;
     level: Level = { vertices: 0, triangles: 0, error: Infinity };
@@ -59,6 +60,8 @@ export class VsplitModel extends Group<{ progress: { progress: Progress }; level
     frameBytes: number;
 
     private sentAt = 0;
+    /** Of the renderer that draws it; null if that is none of WebGL, undefined before it has drawn. */
+    private gl?: WebGL2RenderingContext | null;
     private readonly session: VsplitSession;
     private readonly arrays = new Map<string, LiveArray>();
     /** Of each copy: shared by all parts. */
@@ -112,9 +115,10 @@ export class VsplitModel extends Group<{ progress: { progress: Progress }; level
      */
     update(): boolean {
         if (!this.cursor && !this.applied && !this.begin()) return false;
+        if (this.gl?.isContextLost()) return true;
         const hidden = (1 - this.shown) as 0 | 1;
+        const until = performance.now() + this.frameTime;
         if (this.cursor) {
-            const until = performance.now() + this.frameTime;
             if (!this.cursor.run(until)) return true;
             this.cursor = undefined;
             this.session.taken();
@@ -126,17 +130,32 @@ export class VsplitModel extends Group<{ progress: { progress: Progress }; level
                 this.session.taken();
             }
         }
-        if (!this.upload(hidden)) return true;
+        if (performance.now() > until || !this.upload(hidden)) return true;
         this.swap(hidden);
         return true;
     }
 
     override dispose() {
         this.session.close();
+        this.gl?.canvas.removeEventListener('webglcontextrestored', this.restored);
+        for (const attribute of this.streamed()) attribute.free();
         for (const part of this.parts) {
             for (const copy of part.copies) copy.geometry.dispose();
-            (part.uploader.material as Material).dispose();
         }
+    }
+
+    private streamed(): StreamedAttribute[] {
+        const all = [...this.attributes[0].values(), ...this.attributes[1].values(), ...this.parts.flatMap((part) => part.copies.map((copy) => copy.geometry.index))];
+        return all.filter((attribute) => attribute instanceof StreamedAttribute);
+    }
+    private readonly restored = () => { for (const attribute of this.streamed()) attribute.restore(); };
+    private drawnBy(renderer: { isWebGLRenderer?: boolean; getContext?(): unknown }) {
+        if (this.gl === undefined) {
+            this.gl = renderer.isWebGLRenderer ? renderer.getContext!() as WebGL2RenderingContext : null;
+            this.gl?.canvas.addEventListener('webglcontextrestored', this.restored);
+            for (const part of this.parts) part.uploader.visible = !this.gl;
+        }
+        if (!this.gl) this.measure();
     }
 
     private fail(error: VsplitError) {
@@ -169,7 +188,8 @@ export class VsplitModel extends Group<{ progress: { progress: Progress }; level
 
     /** Brings the hidden copy nearer to the arrays, by one frame's share. True if it is there. */
     private upload(side: 0 | 1): boolean {
-        // What was marked in the frame before has to be gone, or nobody draws.
+        const { gl } = this;
+        if (gl === undefined) return false;
         const attributes: [LiveArray, BufferAttribute][] = [];
         const seen = new Set<string>();
         let fresh = 0;
@@ -180,9 +200,9 @@ export class VsplitModel extends Group<{ progress: { progress: Progress }; level
                 if (part.attributes && name !== 'position' && name !== 'normal' && !part.attributes.has(name)) continue;
                 let attribute = this.attributes[side].get(name);
                 if (!attribute) {
-                    // A new one is sent whole, however large.
-                    this.attributes[side].set(name, attribute = array.attribute(side));
-                    fresh += array.data.byteLength;
+                    this.attributes[side].set(name, attribute = array.attribute(side, gl));
+                    // three.js sends it whole, however large.
+                    if (!gl) fresh += array.data.byteLength;
                 }
                 if (!geometry.hasAttribute(used)) geometry.setAttribute(used, attribute);
                 if (!seen.has(name)) attributes.push([array, attribute]);
@@ -190,17 +210,20 @@ export class VsplitModel extends Group<{ progress: { progress: Progress }; level
                 if (fresh > this.frameBytes) return false;
             }
             if (geometry.index?.array !== part.index.data) {
-                geometry.setIndex(part.index.attribute(side));
-                fresh += part.index.data.byteLength;
+                if (geometry.index instanceof StreamedAttribute) geometry.index.free();
+                geometry.setIndex(part.index.attribute(side, gl));
+                if (!gl) fresh += part.index.data.byteLength;
                 if (fresh > this.frameBytes) return false;
             }
             attributes.push([part.index, geometry.index!]);
         }
-        if (fresh > 0 || attributes.some(([, attribute]) => attribute.updateRanges.length > 0)) return false;
+        // What three.js was given in the frame before has to be gone, or nobody draws.
+        if (!gl && (fresh > 0 || attributes.some(([, attribute]) => attribute.updateRanges.length > 0))) return false;
         let left = this.frameBytes;
-        for (const [array, attribute] of attributes) if (left > 0) left = array.flush(side, attribute, left);
         this.sentAt = performance.now();
-        return left === this.frameBytes;
+        for (const [array, attribute] of attributes) if (left > 0) left = array.flush(side, attribute, left);
+        if (gl) this.measure();
+        return left > 0 && (gl !== null || left === this.frameBytes);
     }
 
     /** Fast machines send more a frame, slow ones less. */
@@ -235,7 +258,9 @@ export class VsplitModel extends Group<{ progress: { progress: Progress }; level
             throw new VsplitError('malformed', `The scene around the progressive mesh cannot be loaded: ${error?.message ?? error}`);
         });
         this.add(this.gltf.scene);
-        this.bounds.setFromObject(this.gltf.scene);
+        this.updateWorldMatrix(true, true);
+        this.bounds.setFromObject(this.gltf.scene).applyMatrix4(this.matrixWorld.clone().invert());
+        this.dispatchEvent({ type: 'bounds' });
         this.first?.();
     }
 
@@ -283,6 +308,16 @@ export class VsplitModel extends Group<{ progress: { progress: Progress }; level
                 this.addPart(primitive.group, objects, 2 ** -mesh.exponent, low, high, new Set(primitive.attributes.map((a) => extension.attributes[a.attribute].name)));
             }
         }
+        // The base mesh may be smaller than the whole. The stream's box is that of all meshes; with several, none is further off than the error.
+        this.bounds.expandByScalar(this.info.baseError * (extension.unit ?? 1));
+        const one = extension.meshes.length === 1 ? this.parts.flatMap((part) => part.objects) : [];
+        if (one.length > 0 && !one.some((object) => (object as { isSkinnedMesh?: boolean }).isSkinnedMesh)) {
+            this.updateWorldMatrix(true, true);
+            const back = this.matrixWorld.clone().invert(), box = this.parts[0].copies[0].geometry.boundingBox!;
+            this.bounds.makeEmpty();
+            for (const object of one) this.bounds.union(box.clone().applyMatrix4(back.clone().multiply(object.matrixWorld)));
+        }
+        this.dispatchEvent({ type: 'bounds' });
         this.begin();
     }
 
@@ -290,10 +325,10 @@ export class VsplitModel extends Group<{ progress: { progress: Progress }; level
         const room = Math.ceil((3 * this.info.triangles) / (this.info.groups > 1 ? this.info.groups / 1.2 : 1));
         const part: Part = {
             group, objects, attributes,
-            index: new LiveArray(new Uint32Array(Math.min(room, 3 * this.info.triangles)), 1),
+            index: new LiveArray(new Uint32Array(Math.min(room, 3 * this.info.triangles)), 1, false, true),
             copies: [new GpuCopy(0), new GpuCopy(1)],
-            // Drawn with no triangles: that is how three.js brings arrays to the GPU.
-            uploader: new Mesh(undefined, new MeshBasicMaterial({ colorWrite: false, depthWrite: false, depthTest: false })),
+            // Drawn with no triangles: that is how three.js brings arrays to the GPU, and how we hear which renderer it is.
+            uploader: new Mesh(undefined, objects[0]?.material ?? new MeshBasicMaterial()),
         };
         const box = new Box3(low.clone().multiplyScalar(scale), high.clone().multiplyScalar(scale));
         for (const copy of part.copies) {
@@ -303,8 +338,8 @@ export class VsplitModel extends Group<{ progress: { progress: Progress }; level
         // Their own bounds follow the bones, over all vertices, each frame.
         for (const object of objects) if ((object as { isSkinnedMesh?: boolean }).isSkinnedMesh) object.frustumCulled = false;
         part.uploader.geometry = part.copies[1].geometry;
-        // three.js sends all arrays before it draws the first object: the time until then is theirs.
-        if (this.parts.length === 0) part.uploader.onBeforeRender = () => this.measure();
+        // Without a context of ours three.js sends all arrays before it draws the first object: the time until then is theirs.
+        if (this.parts.length === 0) part.uploader.onBeforeRender = (renderer) => this.drawnBy(renderer);
         part.uploader.frustumCulled = false;
         part.uploader.raycast = () => {};
         part.uploader.name = 'vsplit upload';

@@ -1,0 +1,214 @@
+// SPDX-FileCopyrightText: 2026 The vsplit authors
+// SPDX-License-Identifier: MIT
+//
+// LiveBuffers: taking splits.
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "extend.hpp"
+#include "live_codes.hpp"
+#include "vsplit/live_buffers.hpp"
+
+namespace vsplit {
+namespace {
+
+constexpr std::int32_t kMostShort = 32767, kNotShort = 1 << 30;
+
+}  // namespace
+
+void LiveBuffers::begin(const ProgressiveMesh& mesh, std::uint32_t vertices, std::uint32_t triangles,
+                        std::uint32_t splits, std::uint32_t corner_changes, std::uint32_t moves,
+                        const PlaceGrid& grid) {
+    const bool tracks = tracks_;
+    *this = LiveBuffers();
+    tracks_ = tracking_ = tracks;
+    if (tracking_) vertex_runs_.resize(vertices), triangle_runs_.resize(triangles);
+    grid_ = grid;
+    packed_ = grid.step > 0 && std::isfinite(1 / grid.step) && std::isfinite(grid.origin[0]) &&
+              std::isfinite(grid.origin[1]) && std::isfinite(grid.origin[2]);
+    totals_ = {vertices, triangles, corner_changes, moves, 0, 0, 0};
+    total_splits_ = splits;
+    corner_bytes_ = std::uint64_t{3} * triangles <= 0x1000000 ? 3 : 4;
+    positions_.reserve(vertices);
+    triangles_.reserve(triangles);
+    if (!mesh.weights.empty()) weights_.reserve(vertices), moved_weights_.reserve(moves);
+    for (const Attribute& attribute : mesh.attributes) {
+        Values& values = attributes_.emplace_back();
+        values.components = attribute.components;
+        values.alive.reserve(std::size_t{attribute.components} * vertices);
+        values.moved.reserve(std::size_t{attribute.components} * moves);
+    }
+    if (!mesh.groups.empty()) groups_.reserve(triangles);
+    parents_.reserve(vertices);
+    codes_.reserve(splits);
+    corners_.reserve(std::size_t{corner_bytes_} * corner_changes + 1);
+    corners_.push_back(0);
+    packed_ ? steps_.reserve(moves) : moved_positions_.reserve(moves);
+    checkpoints_.reserve(splits / kInterval + 1);
+
+    known_.vertices = mesh.base_vertices;
+    known_.triangles = mesh.base_triangles;
+    now_ = known_;
+    dirty_ = {0, now_.vertices, 0, now_.triangles};
+    if (tracking_) vertex_runs_.mark(0, now_.vertices), triangle_runs_.mark(0, now_.triangles);
+    checkpoints_.push_back({known_, ~0u, 0});
+    append(mesh);
+}
+
+void LiveBuffers::append(const ProgressiveMesh& mesh) {
+    std::size_t end = codes_.size();
+    for (; end < mesh.splits.size() && end < total_splits_; ++end) {
+        const Split& split = mesh.splits[end];
+        if (split.vertices_end > totals_.vertices || split.triangles_end > totals_.triangles ||
+            split.corners_end > totals_.corners || split.moves_end > totals_.moves)
+            break;
+    }
+    for (std::size_t split = codes_.size(); split < end; ++split) encode(mesh, split);
+
+    extend(positions_, mesh.positions, known_.vertices);
+    extend(parents_, mesh.parents, known_.vertices);
+    extend(triangles_, mesh.triangles, known_.triangles);
+    if (!mesh.weights.empty()) extend(weights_, mesh.weights, known_.vertices);
+    if (!mesh.groups.empty()) extend(groups_, mesh.groups, known_.triangles);
+    for (std::size_t i = 0; i < attributes_.size(); ++i)
+        extend(attributes_[i].alive, mesh.attributes[i].values,
+               std::size_t{attributes_[i].components} * known_.vertices);
+    append_moves(mesh);
+}
+
+namespace {
+
+constexpr std::uint32_t kNever = ~0u;
+
+/// Where the values are that each move from `begin` on replaces: the move before of its vertex, or kNever: at
+/// birth. `last` is the last one of each vertex.
+std::vector<std::uint32_t> moves_before(const ProgressiveMesh& mesh, std::size_t begin, std::size_t end,
+                                        std::vector<std::uint32_t>& last) {
+    std::vector<std::uint32_t> before;
+    before.reserve(end - begin);
+    for (std::size_t i = begin; i < end; ++i)
+        before.push_back(std::exchange(last[mesh.moves[i].vertex], std::uint32_t(i)));
+    return before;
+}
+
+std::uint32_t flip(float a, float b) {
+    return std::bit_cast<std::uint32_t>(a) ^ std::bit_cast<std::uint32_t>(b);
+}
+
+bool same_bits(const Float3& a, const Float3& b) {
+    return (flip(a.x, b.x) | flip(a.y, b.y) | flip(a.z, b.z)) == 0;
+}
+
+/// The grid's point that is the place bit by bit, if there is one.
+std::optional<std::array<std::int32_t, 3>> on_grid(const PlaceGrid& grid, const Float3& place) {
+    const double inverse = 1 / grid.step, far = std::max({std::abs(double(place.x) - grid.origin[0]),
+                                                          std::abs(double(place.y) - grid.origin[1]),
+                                                          std::abs(double(place.z) - grid.origin[2])});
+    if (!(far * inverse < kGridReach)) return {};
+    const std::array<std::int32_t, 3> at = grid_point(grid, place);
+    if (!same_bits(grid_place(grid, at), place)) return {};
+    return at;
+}
+
+}  // namespace
+
+/// What is exchanged by the moves that are new: kept as differences, which go both ways and in any order.
+void LiveBuffers::append_moves(const ProgressiveMesh& mesh) {
+    last_moves_.reserve(totals_.vertices);
+    last_moves_.resize(known_.vertices, kNever);
+    const std::size_t begin = moves_stored_, end = known_.moves;
+    moves_stored_ = end;
+    std::vector<std::uint32_t> before = moves_before(mesh, begin, end, last_moves_);
+    const auto each = [&](std::size_t from, auto&& store) {
+        for (std::size_t i = from; i < end; ++i) store(i, before[i - from]);
+    };
+    const auto place_before = [&](std::size_t i, std::uint32_t was) {
+        return was == kNever ? mesh.positions[mesh.moves[i].vertex] : mesh.moves[was].position;
+    };
+    if (!mesh.weights.empty())
+        each(begin, [&](std::size_t i, std::uint32_t was) {
+            const VertexMove& move = mesh.moves[i];
+            moved_weights_.push_back(
+                flip(was == kNever ? mesh.weights[move.vertex] : mesh.moves[was].weight, move.weight));
+        });
+    for (std::size_t a = 0; a < attributes_.size(); ++a) {
+        const std::size_t n = attributes_[a].components;
+        const std::vector<float>&born = mesh.attributes[a].values, &moved = mesh.moved_values[a];
+        each(begin, [&](std::size_t i, std::uint32_t was) {
+            const float* const old =
+                was == kNever ? &born[n * mesh.moves[i].vertex] : &moved[n * std::size_t{was}];
+            for (std::size_t k = 0; k < n; ++k)
+                attributes_[a].moved.push_back(flip(old[k], moved[n * i + k]));
+        });
+    }
+    if (packed_)
+        each(begin, [&](std::size_t i, std::uint32_t was) {
+            if (!packed_) return;
+            const auto from = on_grid(grid_, place_before(i, was)),
+                       to = on_grid(grid_, mesh.moves[i].position);
+            std::array<std::int16_t, 3> step{};
+            for (std::size_t axis = 0; axis < 3 && packed_; ++axis) {
+                const std::int32_t by = from && to ? (*to)[axis] - (*from)[axis] : kNotShort;
+                packed_ = by >= -kMostShort && by <= kMostShort;
+                step[axis] = std::int16_t(by);
+            }
+            steps_.push_back(step);
+        });
+    if (!packed_) {
+        std::size_t from = begin;
+        if (!steps_.empty()) {
+            // One that is not on the grid, or too far for it: all are kept as they are, from the first on.
+            steps_ = std::vector<std::array<std::int16_t, 3>>();
+            moved_positions_.reserve(totals_.moves);
+            std::vector<std::uint32_t> last(known_.vertices, kNever);
+            from = 0;
+            before = moves_before(mesh, 0, end, last);
+        }
+        each(from, [&](std::size_t i, std::uint32_t was) {
+            const Float3 a = place_before(i, was), b = mesh.moves[i].position;
+            moved_positions_.push_back({flip(a.x, b.x), flip(a.y, b.y), flip(a.z, b.z)});
+        });
+    }
+    if (available() == total_splits_) last_moves_ = std::vector<std::uint32_t>();  // {} would keep the memory
+}
+
+void LiveBuffers::store_corner(std::uint32_t corner) {
+    corners_.pop_back();
+    for (unsigned i = 0; i < corner_bytes_; ++i) corners_.push_back(std::uint8_t(corner >> 8 * i));
+    corners_.push_back(0);
+    Checkpoint& checkpoint = checkpoints_.back();
+    checkpoint.first_corner = std::min(checkpoint.first_corner, corner);
+    checkpoint.last_corner = std::max(checkpoint.last_corner, corner);
+}
+
+void LiveBuffers::encode(const ProgressiveMesh& mesh, std::size_t index) {
+    const Split& split = mesh.splits[index];
+    const Special counts{split.vertices_end - known_.vertices, split.triangles_end - known_.triangles,
+                         split.corners_end - known_.corners, split.moves_end - known_.moves};
+    const bool common =
+        counts.vertices == 1 && counts.triangles <= kTriangleBits && counts.corners <= kCornerBits &&
+        (counts.moves == 0 ||
+         (counts.moves == 1 && mesh.moves[known_.moves].vertex == mesh.parents[known_.vertices]));
+    for (std::uint32_t i = known_.corners; i < split.corners_end; ++i) {
+        store_corner(mesh.corner_changes[i].corner);
+        if (!common) special_corners_.push_back(mesh.corner_changes[i].vertex);
+    }
+    if (common) {
+        codes_.push_back(std::uint8_t(counts.corners | counts.triangles << kTriangleShift |
+                                      (counts.moves != 0 ? kMoveBit : 0)));
+    } else {
+        codes_.push_back(kSpecialBit);
+        specials_.push_back(counts);
+        for (std::uint32_t i = known_.moves; i < split.moves_end; ++i)
+            special_moves_.push_back(mesh.moves[i].vertex);
+    }
+    if (errors_.empty() || errors_.back().error != split.error)
+        errors_.push_back({std::uint32_t(index), split.error});
+    pass(known_, index);
+    if ((index + 1) % kInterval == 0) checkpoints_.push_back({known_, ~0u, 0});
+}
+
+}  // namespace vsplit
