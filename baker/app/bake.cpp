@@ -17,6 +17,7 @@
 #include "model.hpp"
 #include "vsplit/bake/collapse.hpp"
 #include "vsplit/bake/files.hpp"
+#include "vsplit/bake/manyfold.hpp"
 #include "vsplit/bake/scene.hpp"
 #include "vsplit/live_mesh.hpp"
 #include "vsplit/write.hpp"
@@ -35,6 +36,8 @@ struct BakeCommand {
     double show = 0;  ///< Of a progressive GLB, the ratio that viewers see.
     bool meshopt = false, draco = false;
     bool lossless = false;
+    bool shape_only = false;
+    bool manyfold = false;  ///< The GLB is one of MANYFOLD_mesh_progressive.
     std::string profile = "quality";
 
     int run() const;
@@ -45,12 +48,15 @@ struct BakeCommand {
     }
     /// A scene into a progressive GLB.
     int run_scene(bake::CollapseOptions options) const;
+    /// A mesh, or a scene's shape, into a GLB with MANYFOLD_mesh_progressive.
+    int run_manyfold(const bake::CollapseOptions& options) const;
     /// The mesh to bake; if the input is a cloud of points, the surface made of it, told in `surface`.
     Result<bake::MeshFile> load(const bake::Progress& progress, std::optional<CloudSurface>& surface,
-                                int& exit) const;
+                                std::vector<std::string>& notes, bake::PoseSets& poses, int& exit) const;
 };
 
 Result<bake::MeshFile> BakeCommand::load(const bake::Progress& progress, std::optional<CloudSurface>& surface,
+                                         std::vector<std::string>& notes, bake::PoseSets& poses,
                                          int& exit) const {
     const auto failed = [&](const Error& error) {
         exit = fail_input(input.path, error);
@@ -74,7 +80,9 @@ Result<bake::MeshFile> BakeCommand::load(const bake::Progress& progress, std::op
             return file;
         }
     }
-    return load_mesh(input, exit);
+    // Marks of a file number its vertices.
+    return shape_only || !marks.marks.empty() ? load_mesh(input, exit)
+                                              : load_placed(input, notes, poses, exit);
 }
 
 int BakeCommand::run_scene(bake::CollapseOptions options) const {
@@ -89,6 +97,8 @@ int BakeCommand::run_scene(bake::CollapseOptions options) const {
     *bytes = {};
     ProgressBar bar(common);
     options.part_of = scene->part_of;
+    options.poses = std::move(scene->poses);
+    const auto posed = poses_note(options.poses);
     std::optional<MarkReport> marked;
     if (marks.any()) {
         auto report = apply_marks(marks, input.path, scene->mesh, {}, scene->mesh.positions.size(), options,
@@ -122,6 +132,7 @@ int BakeCommand::run_scene(bake::CollapseOptions options) const {
                      {"primitives", scene->primitives.size()},
                      {"attributes", scene->mesh.attributes.size()},
                      {"splits", splits},
+                     {"degenerate_triangles", result->report.degenerate_triangles},
                      {"shown", {{"triangles", shown.mesh.triangles.size()}, {"error", error}}},
                      {"stream_bytes", stream->size()},
                      {"bytes", glb->size()},
@@ -136,15 +147,52 @@ int BakeCommand::run_scene(bake::CollapseOptions options) const {
     for (const std::string& line : describe(scene->report)) say(common, "  " + line);
     if (marked)
         for (const std::string& line : marked->describe()) say(common, "  " + line);
+    if (posed) say(common, "  " + *posed);
     if (const std::uint64_t dropped = result->report.degenerate_triangles)
-        say(common,
-            fmt::format("  {} triangles with two corners at one point, left out", with_commas(dropped)));
+        say(common, fmt::format("  {} triangles with two corners at one point, in the full mesh alone",
+                                with_commas(dropped)));
     say(common,
         fmt::format("{}: shows {} triangles (error {}), {} splits, {} bytes, {} of them stream, in {:.2f} s",
                     output.path, with_commas(shown.mesh.triangles.size()), short_number(error),
                     with_commas(splits), with_commas(glb->size()), with_commas(stream->size()), seconds));
     if (!common.quiet)
         for (const std::string& note : scene->notes) fmt::print(stderr, "vsplit: {}: {}\n", input.path, note);
+    return kDone;
+}
+
+int BakeCommand::run_manyfold(const bake::CollapseOptions& options) const {
+    int exit = kDone;
+    ProgressBar bar(common);
+    auto file = load_mesh(input, exit);
+    if (!file) return exit;
+    auto result = bake::collapse(file->mesh, options, bar.callback());
+    if (!result) return fail_input(input.path, result.error());
+    file->mesh = {};
+    auto glb = bake::encode_manyfold(result->mesh);
+    if (!glb) return fail_input(input.path, glb.error());
+    if (const int failed = write_output(output, glb->bytes)) return failed;
+    const std::size_t triangles = result->mesh.triangles.size();
+    if (common.json) {
+        if (!common.quiet)
+            print_json({{"input", input.path},
+                        {"output", output.path},
+                        {"read", to_json(file->report)},
+                        {"ratio_1_triangles", triangles},
+                        {"base", {{"vertices", glb->base_vertices}, {"triangles", glb->base_triangles}}},
+                        {"records", glb->records},
+                        {"left_out", glb->left_out},
+                        {"bytes", glb->bytes.size()}});
+        return kDone;
+    }
+    for (const std::string& line : describe(file->report)) say(common, "  " + line);
+    say(common, fmt::format("{}: {} records from a base of {} triangles to {}, the shape alone, {} bytes",
+                            output.path, with_commas(glb->records), with_commas(glb->base_triangles),
+                            with_commas(triangles), with_commas(glb->bytes.size())));
+    if (glb->left_out > 0)
+        say(common,
+            fmt::format("  no coarser base: a split before it bears no single vertex in a fan of triangles "
+                        "({} coarser splits left out)",
+                        with_commas(glb->left_out)));
     return kDone;
 }
 
@@ -159,12 +207,21 @@ int BakeCommand::run() const {
     if (const auto reason = marks.fault()) return fail_usage(*reason);
     if (profile == "stream") options.placement = bake::Placement::kEndpoint;
     if (const int refused = check_output(output)) return refused;
-    if (extension_of(output.path) == ".glb") return run_scene(options);
+    const bool glb = extension_of(output.path) == ".glb";
+    if (manyfold && (!glb || meshopt || draco || lossless || shape_only || marks.any() || show != 0))
+        return fail_usage(
+            "--manyfold writes a .glb of the shape alone, and goes with none of --show, --meshopt, "
+            "--draco, --lossless, --shape-only, --marks, --region, --auto-weights and --keep");
+    if (shape_only && glb)
+        return fail_usage("--shape-only is of a .pmesh; a progressive GLB keeps the scene");
+    if (manyfold) return run_manyfold(options);
+    if (glb) return run_scene(options);
 
     int exit = kDone;
     ProgressBar bar(common);
     std::optional<CloudSurface> surface;
-    auto file = load(bar.callback(), surface, exit);
+    std::vector<std::string> notes;
+    auto file = load(bar.callback(), surface, notes, options.poses, exit);
     if (!file) return exit;
     const bake::MeshSurvey survey = bake::survey_mesh(file->mesh);
     std::optional<MarkReport> marked;
@@ -177,6 +234,8 @@ int BakeCommand::run() const {
     auto result = bake::collapse(file->mesh, options, bar.callback());
     if (!result) return fail_input(input.path, result.error());
     const std::size_t triangles = file->mesh.triangles.size();
+    const auto posed = poses_note(options.poses);
+    const bool with_attributes = !file->mesh.attributes.empty() || !file->mesh.groups.empty();
     const auto moved = surface ? std::nullopt : origin_note(file->mesh);
     file->mesh = {};
     auto bytes = write_progressive_mesh(result->mesh, rounding());
@@ -190,6 +249,7 @@ int BakeCommand::run() const {
     if (common.json) {
         Json json = {{"input", input.path},
                      {"output", output.path},
+                     {"notes", notes},
                      {"read", to_json(file->report)},
                      {"mesh", to_json(survey)},
                      {"ratio_1_triangles", triangles},
@@ -198,6 +258,7 @@ int BakeCommand::run() const {
                        {"triangles", mesh.base_triangles},
                        {"error", error_at(mesh, 0)}}},
                      {"splits", mesh.splits.size()},
+                     {"degenerate_triangles", result->report.degenerate_triangles},
                      {"components_vanished", result->report.components_vanished},
                      {"fixed_vertices", result->report.fixed_vertices},
                      {"stopped_by", result->report.stopped_by},
@@ -226,7 +287,15 @@ int BakeCommand::run() const {
     if (moved) say(common, "  " + *moved);
     if (file->report.format.starts_with("glTF"))
         say(common,
-            "  the shape alone, as one mesh: to keep normals, textures, skins and materials, bake to a .glb");
+            with_attributes
+                ? fmt::format("  as one mesh in the world's units, with {} attributes; nodes, materials "
+                              "and textures are kept by a .glb",
+                              mesh.attributes.size())
+                : std::string("  the shape alone, as one mesh"));
+    if (posed) say(common, "  " + *posed);
+    if (const std::uint64_t dropped = result->report.degenerate_triangles)
+        say(common, fmt::format("  {} triangles with two corners at one point, in the full mesh alone",
+                                with_commas(dropped)));
     if (marked)
         for (const std::string& line : marked->describe()) say(common, "  " + line);
     if (survey.duplicate_triangles)
@@ -240,6 +309,8 @@ int BakeCommand::run() const {
                     with_commas(bytes->size()),
                     8.0 * double(bytes->size()) / double(std::max<std::size_t>(mesh.positions.size(), 1)),
                     seconds));
+    if (!common.quiet)
+        for (const std::string& note : notes) fmt::print(stderr, "vsplit: {}: {}\n", input.path, note);
     if (mesh.base_vertices > 64 * std::max<std::uint64_t>(result->report.components, 1))
         say(common, "  no coarser base: " + result->report.stopped_by);
     return kDone;
@@ -259,13 +330,14 @@ void add_bake(CLI::App& app, int& exit) {
         "  vsplit bake hero.ply --marks hero.marks --keep face=95%@40% -o hero.pmesh\n"
         "  vsplit bake scan.xyz -o scan.pmesh                         points: reconstructed first\n"
         "  vsplit bake hero.glb -o hero.vsplit.glb                    the scene too, as a progressive GLB\n"
-        "A .pmesh of a scene has its shape alone, as one mesh; a progressive GLB keeps all that the scene "
-        "has.\n"
+        "A .pmesh of a scene has its meshes with their attributes, as one mesh; a progressive GLB keeps all "
+        "that the scene has.\n"
         "Reads OBJ, PLY, OFF, STL, glTF and GLB; point clouds as .xyz .txt .pts .asc .csv .ply .pcd.");
     sub->add_option("input", command->input.path, "Mesh or scene")->required()->type_name("IN");
     command->output.add_to(*sub,
                            "The .pmesh to write; or .glb, of a scene: a progressive GLB (formats/gltf)");
     command->input.add_to(*sub);
+    command->input.add_poses_to(*sub);
     command->cloud.add_to(*sub);
     command->collapse.add_to(*sub);
     command->marks.add_to(*sub);
@@ -280,6 +352,8 @@ void add_bake(CLI::App& app, int& exit) {
                                  "Places are rounded to this many bits of the longest side")
                      ->check(CLI::Range(2, 20))
                      ->capture_default_str();
+    sub->add_flag("--shape-only", command->shape_only,
+                  "Of a scene baked to .pmesh: places alone, vertices at one place welded, no attributes");
     sub->add_flag("--lossless", command->lossless, "Keep every float of places and attributes")
         ->excludes(bits);
     sub->add_option("--block-bytes", command->write.block_bytes, "Size that blocks of splits aim at")
@@ -288,6 +362,9 @@ void add_bake(CLI::App& app, int& exit) {
     sub->add_option("--show", command->show, "Of a progressive GLB: the ratio that any viewer shows")
         ->check(CLI::Range(0.0, 1.0))
         ->capture_default_str();
+    sub->add_flag("--manyfold", command->manyfold,
+                  "A .glb with the proposed extension MANYFOLD_mesh_progressive instead, of any mesh's shape "
+                  "(formats/gltf)");
     sub->add_flag("--meshopt", command->meshopt,
                   "Of a progressive GLB: EXT_meshopt_compression of what it shows");
     sub->add_flag("--draco", command->draco, "The same with KHR_draco_mesh_compression")

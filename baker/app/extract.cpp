@@ -94,12 +94,15 @@ int ExtractCommand::run() const {
                      {"error", recorded},
                      {"bytes", bytes.size()}};
         if (note) json["note"] = *note;
+        if (!model->notes.empty()) json["notes"] = model->notes;
         if (!common.quiet) print_json(json);
         return kDone;
     }
     say(common, fmt::format("{}: {} triangles ({:.2f} %), {} vertices, error {}, {} bytes", output.path,
                             with_commas(cut.triangles.size()), 100 * kept, with_commas(cut.positions.size()),
                             short_number(recorded), with_commas(bytes.size())));
+    if (!common.quiet)
+        for (const std::string& line : model->notes) fmt::print(stderr, "vsplit: {}: {}\n", input, line);
     if (note && !common.quiet) fmt::print(stderr, "vsplit: {}: {}\n", output.path, *note);
     return kDone;
 }

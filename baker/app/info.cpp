@@ -17,6 +17,8 @@ struct InfoCommand {
     std::string input;
     bool annotate = false;
     int run() const;
+    /// A record that is not sound makes it bad input.
+    int show_manyfold(const bake::ManyfoldFile& file) const;
 };
 
 /// A line a field: offset, bytes, type, value, meaning, as in formats/spec/pmesh-1.md.
@@ -161,10 +163,38 @@ Json to_json(const FileInfo& info) {
             {"blocks", blocks}};
 }
 
+int InfoCommand::show_manyfold(const bake::ManyfoldFile& file) const {
+    const ProgressiveMesh& mesh = file.mesh;
+    const double error = error_at(mesh, 0);
+    if (common.json && !common.quiet)
+        print_json(
+            {{"extension", "MANYFOLD_mesh_progressive"},
+             {"records", file.records},
+             {"sound", file.read},
+             {"fault", file.fault},
+             {"vertices", mesh.positions.size()},
+             {"triangles", mesh.triangles.size()},
+             {"base",
+              {{"vertices", mesh.base_vertices}, {"triangles", mesh.base_triangles}, {"error", error}}}});
+    say(common,
+        fmt::format("{}: glTF with MANYFOLD_mesh_progressive, {} records", input, with_commas(file.records)));
+    say(common, fmt::format("  {} triangles, {} vertices, from a base of {} triangles (error at most {})",
+                            with_commas(mesh.triangles.size()), with_commas(mesh.positions.size()),
+                            with_commas(mesh.base_triangles), short_number(error)));
+    const auto note = manyfold_note(file);
+    if (!note) return kDone;
+    return fail_input(input, {ErrorCode::kMalformed, *note, Error::kNowhere, 0});
+}
+
 int InfoCommand::run() const {
     int exit = kDone;
     const auto file = read_stream_file(input, exit);
     if (!file) return exit;
+    if (!file->carried && is_gltf(file->bytes, extension_of(input))) {
+        const auto manyfold = load_manyfold(input, file->bytes, exit);
+        if (!manyfold) return exit;
+        if (*manyfold) return show_manyfold(**manyfold);
+    }
     const auto bytes = file->stream();
     Limits limits;
     limits.max_bytes = std::uint64_t{1} << 36;

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "model.hpp"
@@ -33,6 +34,24 @@ void InputOptions::add_to(CLI::App& command) {
         .add_option("--weld", weld, "Which vertices at the same place become one: auto, none, boundary, all")
         ->check(CLI::IsMember({"auto", "none", "boundary", "all"}))
         ->capture_default_str();
+}
+
+void InputOptions::add_poses_to(CLI::App& command) {
+    poses = 8;
+    command
+        .add_option(
+            "--poses", poses,
+            "Of a scene: moments of its animations at which skinned and morphing meshes are measured, "
+            "besides the bind pose; 0: none")
+        ->check(CLI::Range(0, 1024))
+        ->capture_default_str();
+}
+
+std::optional<std::string> poses_note(const bake::PoseSets& poses) {
+    std::size_t most = 0;
+    for (const auto& set : poses.sets) most = std::max(most, set.size());
+    if (most == 0) return {};
+    return fmt::format("measured in {} pose{} of its animations, too", most, most == 1 ? "" : "s");
 }
 
 Result<bake::MeshFile> load_mesh(const InputOptions& options, int& exit) {
@@ -69,6 +88,39 @@ Result<bake::MeshFile> load_mesh(const InputOptions& options, int& exit) {
         if (!weights) return failed(options.weights, weights.error());
         if (const Status applied = bake::apply_weights(*file, *weights); !applied)
             return failed(options.weights, applied.error());
+    }
+    return file;
+}
+
+Result<bake::MeshFile> load_placed(const InputOptions& options, std::vector<std::string>& notes,
+                                   bake::PoseSets& poses, int& exit) {
+    std::error_code ignored;
+    if (options.weld != "auto" ||
+        (!options.weights.empty() && std::filesystem::exists(options.weights, ignored)))
+        return load_mesh(options, exit);
+    bake::MeshFile file;
+    {
+        auto bytes = bake::read_file(options.path);
+        if (!bytes) {
+            exit = fail_input(options.path, bytes.error());
+            return bytes.error();
+        }
+        if (!is_gltf(*bytes, extension_of(options.path))) return load_mesh(options, exit);
+        auto scene = load_scene(options, *bytes, exit);
+        if (!scene) return scene.error();
+        auto placed = bake::placed_mesh(*scene);
+        if (!placed) {
+            exit = fail_input(options.path, placed.error());
+            return placed.error();
+        }
+        file.mesh = std::move(*placed);
+        file.report = std::move(scene->report);
+        notes = std::move(scene->notes);
+        poses = bake::placed_poses(*scene);
+    }
+    if (file.mesh.attributes.empty() && file.mesh.groups.empty()) {
+        poses = {};
+        return load_mesh(options, exit);
     }
     return file;
 }

@@ -141,7 +141,8 @@ int LodsCommand::run() {
     auto model = load_model(input, collapse, common, exit);
     if (!model) return exit;
     std::vector<std::string> notes;
-    if (model->scene) notes = model->scene->notes;
+    notes = model->notes;
+    if (model->scene) notes.insert(notes.end(), model->scene->notes.begin(), model->scene->notes.end());
     const std::vector<Wish> cuts = wishes(*model, notes);
     if (separate)
         for (std::size_t k = 0; k < cuts.size(); ++k)
@@ -177,6 +178,7 @@ int LodsCommand::run() {
     }
     say(common, fmt::format("{}: {} levels, {} bytes{}", output.path, levels.size(), with_commas(bytes),
                             separate ? fmt::format(" in {} files", files.size()) : ""));
+    if (model->posed) say(common, "  " + *model->posed);
     for (std::size_t i = 0; i < levels.size(); ++i)
         say(common, fmt::format("  LOD {}: {:>11} triangles ({:6.2f} %), error {}", i,
                                 with_commas(levels[i].mesh.triangles.size()),
@@ -223,6 +225,7 @@ void add_lods(CLI::App& app, int& exit) {
     sub->add_flag("--meshopt", command->format.meshopt, "Geometry by EXT_meshopt_compression");
     command->output.add_to(*sub, "The .glb to write");
     command->input.add_to(*sub);
+    command->input.add_poses_to(*sub);
     command->collapse.add_to(*sub);
     command->common.add_to(*sub);
     sub->callback([command, &exit] { exit = command->run(); });

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "model.hpp"
 
+#include <fmt/format.h>
 #include <tbb/global_control.h>
 
 #include <algorithm>
@@ -68,10 +69,25 @@ Result<std::vector<std::byte>> Model::encode(std::span<const bake::GltfLevel> le
 Result<bake::Scene> load_scene(const InputOptions& input, std::span<const std::byte> bytes, int& exit) {
     bake::GltfOptions options;
     options.weight_channel = input.weights;
+    options.poses = input.poses;
     const std::filesystem::path folder = std::filesystem::path(input.path).parent_path();
     auto scene = bake::parse_scene(bytes, folder.empty() ? "." : folder.string(), options);
     if (!scene) exit = fail_input(input.path, scene.error());
     return scene;
+}
+
+Result<std::optional<bake::ManyfoldFile>> load_manyfold(const std::string& path,
+                                                        std::span<const std::byte> bytes, int& exit) {
+    const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+    auto file = bake::parse_manyfold(bytes, folder.empty() ? "." : folder.string());
+    if (!file) exit = fail_input(path, file.error());
+    return file;
+}
+
+std::optional<std::string> manyfold_note(const bake::ManyfoldFile& file) {
+    if (file.fault.empty()) return {};
+    return fmt::format("record {} of {} {}: only those before it are taken", file.read, file.records,
+                       file.fault);
 }
 
 Result<Model> load_model(const InputOptions& input, const CollapseFlags& flags, const Common& common,
@@ -107,6 +123,16 @@ Result<Model> load_model(const InputOptions& input, const CollapseFlags& flags, 
             model.scene = std::move(*around);
         }
     } else {
+        if (scene) {
+            auto manyfold = load_manyfold(input.path, file->bytes, exit);
+            if (!manyfold) return manyfold.error();
+            if (*manyfold) {
+                model.mesh = std::move((*manyfold)->mesh);
+                if (const auto note = manyfold_note(**manyfold)) model.notes.push_back(*note);
+                model.radius = half_diagonal(model.mesh.positions);
+                return model;
+            }
+        }
         ProgressBar bar(common);
         Mesh full;
         if (scene) {
@@ -115,6 +141,9 @@ Result<Model> load_model(const InputOptions& input, const CollapseFlags& flags, 
             model.scene = std::move(*read);
             full = std::move(model.scene->mesh);
             options.part_of = std::move(model.scene->part_of);
+            options.poses = std::move(model.scene->poses);
+            model.posed = poses_note(options.poses);
+            model.scene->poses = {};
             model.scene->mesh = {};
             for (const Attribute& attribute : full.attributes)
                 model.scene->mesh.attributes.push_back(

@@ -12,6 +12,7 @@
 #include "collapse_flags.hpp"
 #include "command.hpp"
 #include "input.hpp"
+#include "vsplit/bake/manyfold.hpp"
 #include "vsplit/bake/scene.hpp"
 #include "vsplit/progressive_mesh.hpp"
 
@@ -28,10 +29,18 @@ struct StreamFile {
 /// On failure the message is said and `exit` set, here and below.
 Result<StreamFile> read_stream_file(const std::string& path, int& exit);
 
+/// A GLB with MANYFOLD_mesh_progressive; nothing if it is none. `bytes` are a scene's.
+Result<std::optional<bake::ManyfoldFile>> load_manyfold(const std::string& path,
+                                                        std::span<const std::byte> bytes, int& exit);
+/// Why not all of its records were taken, if so.
+std::optional<std::string> manyfold_note(const bake::ManyfoldFile& file);
+
 struct Model {
     ProgressiveMesh mesh;
     std::optional<bake::Scene> scene;
-    double radius = 0;  ///< Of a ball around it, in the units of world_error().
+    std::vector<std::string> notes;    ///< On what was read, for people; others are the scene's.
+    std::optional<std::string> posed;  ///< If it was baked in poses, in how many, for people.
+    double radius = 0;                 ///< Of a ball around it, in the units of world_error().
 
     /// An error of the mesh in the world that a viewer sees: of a scene the largest that it can be there.
     double world_error(double error) const { return scene ? error * scene->unit : error; }

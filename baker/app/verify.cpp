@@ -171,21 +171,22 @@ int VerifyCommand::run() const {
                       bad.empty() ? fmt::format("{} prefixes", ends.size()) : bad});
     if (!against.path.empty()) {
         live.go_to(live.max_level());
+        const auto ungrouped = [](Mesh whole) {
+            whole.groups.clear();
+            return whole;
+        };
         if (file->carried) {
             auto original = bake::read_file(against.path);
             if (!original) return fail_input(against.path, original.error());
             auto scene = load_scene(against, *original, exit);
             if (!scene) return exit;
-            // Baking leaves out, and says so, what has two corners at one point.
-            std::erase_if(scene->mesh.triangles, [&](const Triangle& t) {
-                const auto& p = scene->mesh.positions;
-                return p[t[0]] == p[t[1]] || p[t[1]] == p[t[2]] || p[t[2]] == p[t[0]];
-            });
-            scene->mesh.groups.clear();
-            checks.push_back(compare(live.snapshot(), scene->mesh, *info));
+            checks.push_back(compare(live.snapshot(), ungrouped(std::move(scene->mesh)), *info));
         } else {
-            auto input = load_mesh(against, exit);
+            std::vector<std::string> notes;
+            bake::PoseSets poses;
+            auto input = by_points ? load_placed(against, notes, poses, exit) : load_mesh(against, exit);
             if (!input) return exit;
+            if (by_points) input->mesh = ungrouped(std::move(input->mesh));
             checks.push_back(compare(live.snapshot(), input->mesh, *info));
         }
     }

@@ -73,7 +73,7 @@ CollapseState::CollapseState(const Mesh& source, const CollapseOptions& chosen)
 
 CollapseState::CollapseState(const PointMesh& points, const Mesh& input, const CollapseOptions& chosen)
     : CollapseState(StarMesh(points.mesh, points.corners, points.groups), chosen, points.part_of) {
-    wedges = std::make_unique<WedgeValues>(input, chosen.attribute_weights);
+    wedges = std::make_unique<WedgeValues>(input, chosen.attribute_weights, chosen.poses);
 }
 
 Collapser::Collapser(const Mesh& mesh, const CollapseOptions& options)
@@ -351,7 +351,7 @@ bool Collapser::run(const Progress& progress) {
     return true;
 }
 
-ProgressiveMesh Collapser::finish(CollapseReport& report) {
+ProgressiveMesh Collapser::finish(CollapseReport& report, WedgeExtras& extras) {
     report.collapses = record_.size();
     report.components = state_.components.count();
     report.unused_vertices = unused_vertices_;
@@ -369,7 +369,7 @@ ProgressiveMesh Collapser::finish(CollapseReport& report) {
     std::vector<Target>().swap(state_.targets);
     state_.paper.reset();
     ProgressiveMesh mesh = input_ ? finish_with_wedges(record_, wedge_record_, state_.mesh, *state_.wedges,
-                                                       *input_, state_.weights)
+                                                       *input_, state_.weights, extras)
                                   : record_.finish(state_.mesh, state_.weights, nullptr);
     // An error beyond the floats stays the largest of them, so that files hold finite numbers.
     const double unit = 1 / state_.mesh.scale();

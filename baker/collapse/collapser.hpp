@@ -22,8 +22,8 @@ class Collapser {
     bool run(const Progress& progress);
 
     /// After run(): the record as a progressive mesh; errors in object units, not yet calibrated.
-    /// Its groups are tags of copies(), if there are any.
-    ProgressiveMesh finish(CollapseReport& report);
+    /// Its groups are tags of copies(), if there are any. `extras` are for a mesh with wedges.
+    ProgressiveMesh finish(CollapseReport& report, WedgeExtras& extras);
     TriangleCopies take_copies() { return state_.mesh.take_copies(); }
 
   private:

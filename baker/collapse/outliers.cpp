@@ -130,7 +130,8 @@ class BatchKeys {
 
 }  // namespace
 
-void put_off_outliers(ProgressiveMesh& mesh, std::vector<float>& deviations, bool batches) {
+std::vector<std::uint32_t> put_off_outliers(ProgressiveMesh& mesh, std::vector<float>& deviations,
+                                            bool batches) {
     const std::size_t count = mesh.splits.size();
     std::vector<std::uint32_t> keys;
     {
@@ -153,6 +154,7 @@ void put_off_outliers(ProgressiveMesh& mesh, std::vector<float>& deviations, boo
     std::vector<float> moved(count);
     for (std::size_t i = 0; i < count; ++i) moved[i] = deviations[order[i]];
     deviations.swap(moved);
+    return order;
 }
 
 }  // namespace vsplit::bake

@@ -5,6 +5,7 @@
 // too.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "vsplit/progressive_mesh.hpp"
@@ -15,7 +16,8 @@ namespace vsplit::bake {
 /// allows it, with what depends on them; others come earlier in their stead. Every collapse stays as it was,
 /// star and all; only their order changes. `deviations` are those of the splits (measure_collapses()), and
 /// change their order with them; recorded errors stay the largest so far of what was recorded.
-/// With `batches`, those of a record made in batches stay together.
-void put_off_outliers(ProgressiveMesh& mesh, std::vector<float>& deviations, bool batches);
+/// With `batches`, those of a record made in batches stay together. Returns which split is now at each place.
+std::vector<std::uint32_t> put_off_outliers(ProgressiveMesh& mesh, std::vector<float>& deviations,
+                                            bool batches);
 
 }  // namespace vsplit::bake

@@ -229,14 +229,15 @@ Region::Outcome Region::attempt(std::uint32_t u, const Option& option, Bucket bu
         star_.place_at(place);
         if (!guards_.keeps_shape(star_, place, state_.histories, state_.strictness)) return kNeverCost;
         deviation = deviation_of(star_, place, state_.histories);
-        const double d = deviation.largest;
+        AttributeCost attributes;
+        if (mesh_.has_wedges()) attributes = attribute_cost(mesh_, star_, wedge_star_, *state_.wedges, place);
+        if (attributes.turns_over && state_.strictness.keep_orientation) return kNeverCost;
+        const double d = std::max(double(deviation.largest), attributes.posed);
         // The same dimension as the cost, so that one factor serves every level: area times distance^3.
         const double limit =
             state_.paper ? 0 : state_.options.deviation_limit * d * d * d * state_.mean_star * weight;
         float total = float(std::max(geometric, limit) * (relaxed ? kRelaxed : 1) * irregular);
-        if (mesh_.has_wedges())
-            total += float(weight * attribute_cost(mesh_, star_, wedge_star_, *state_.wedges, place));
-        return total;
+        return total + float(weight * attributes.cost);
     };
     Float3 rounded = option.fold == Fold::kIntoFirst    ? mesh_.raw_position(u)
                      : option.fold == Fold::kIntoSecond ? mesh_.raw_position(option.other)
@@ -330,10 +331,22 @@ void Region::fold_wedges(const EdgeStar& star, Double3 place) {
     for (std::size_t i = 0; i < wedge_star_.pairs.size(); ++i)
         join_samples(mesh_, star, wedge_star_.pairs[i], *state_.wedges, place,
                      std::span(mixed).subspan(stride * i, stride));
+    // Wedges of a point that moved together still do, whatever was mixed on each side of a seam: or it would
+    // open in a pose. The first pair says how.
+    WedgeValues& values = *state_.wedges;
+    thread_local std::vector<std::uint32_t> alike;
+    alike_in_motion(wedge_star_, values, alike);
     for (std::size_t i = 0; i < wedge_star_.pairs.size(); ++i) {
         const auto from = std::span(mixed).subspan(stride * i, stride);
         std::copy(from.begin(), from.end(), state_.wedges->of(wedge_star_.pairs[i].parent).begin());
     }
+    for (const std::uint32_t wedge : alike)
+        values.copy_motion(values.of(wedge_star_.pairs[0].parent), values.of(wedge));
+    // Wedges without a partner keep their other attributes and move all the same.
+    if (state_.wedges->most_poses() > 0)
+        for (const auto* list : {&wedge_star_.moved, &wedge_star_.transferred})
+            for (const std::uint32_t wedge : *list)
+                state_.wedges->repose(wedge, mesh_.round(place), state_.wedges->of(wedge));
 }
 
 void Region::apply(const EdgeStar& star, const Option& option, std::uint32_t parent, Float3 place,

@@ -19,10 +19,21 @@ namespace vsplit::bake {
 void mix_at(const StarMesh& mesh, const EdgeStar& star, const WedgeStar& wedges, const WedgePair& pair,
             const WedgeValues& values, Double3 place, std::span<float> out);
 
-/// What the collapse does to attributes, as a cost: the triangles' area^1.5 around the edge times the mean
-/// squared length that WedgeValues::apart2 says, of the samples of all wedges against the new triangles.
-double attribute_cost(const StarMesh& mesh, const EdgeStar& star, const WedgeStar& wedges,
-                      const WedgeValues& values, Double3 place);
+/// What a collapse does to attributes and in poses.
+struct AttributeCost {
+    /// The triangles' area^1.5 around the edge times the mean squared length that WedgeValues::apart2 says,
+    /// of the samples of all wedges against the new triangles, plus the mean over all poses of how much
+    /// farther (squared) a sample is from them there than in the bind pose.
+    double cost = 0;
+    double posed = 0;         ///< The largest of those distances in any pose, working units.
+    bool turns_over = false;  ///< A triangle is turned over in a pose.
+};
+AttributeCost attribute_cost(const StarMesh& mesh, const EdgeStar& star, const WedgeStar& wedges,
+                             const WedgeValues& values, Double3 place);
+
+/// The wedges of an edge that joints and morph targets move as they do the first pair's, at each end; not
+/// those of that pair itself.
+void alike_in_motion(const WedgeStar& star, const WedgeValues& values, std::vector<std::uint32_t>& out);
 
 /// The samples of the wedge that remains of a pair, of which those stay that it shows worst. `mixed`: what it
 /// will have; the mesh is still as it was.

@@ -28,6 +28,7 @@ class Replay {
 
     bool is_born(std::uint32_t wedge) const { return births_[wedge] != kNoVertex; }
     std::uint32_t birth(std::uint32_t wedge) const { return births_[wedge]; }
+    const std::vector<std::uint32_t>& births() const { return births_; }
 
     void bear(std::uint32_t wedge, std::uint32_t point, std::uint32_t parent, std::span<const float> values) {
         births_[wedge] = std::uint32_t(out.positions.size());
@@ -119,6 +120,18 @@ class Replay {
         }
     }
 
+    /// Of each pose, behind the attributes.
+    void share_out_poses(std::size_t begin, std::vector<PosedRecord>& posed) const {
+        const auto column = [&](const std::vector<float>& rows, std::size_t at) {
+            std::vector<Float3> places;
+            for (std::size_t row = at; row < rows.size(); row += stride_)
+                places.push_back({rows[row], rows[row + 1], rows[row + 2]});
+            return places;
+        };
+        for (std::size_t at = begin; at < stride_; at += 3)
+            posed.push_back({column(birth_values, at), column(move_values, at)});
+    }
+
     ProgressiveMesh out;
     std::vector<float> birth_values, move_values;
 
@@ -167,7 +180,7 @@ void WedgeRecord::append(const WedgeRecord& other, std::size_t begin, std::size_
 
 ProgressiveMesh finish_with_wedges(const Record& record, const WedgeRecord& wedges, const StarMesh& mesh,
                                    const WedgeValues& values, const Mesh& input,
-                                   const std::vector<float>& weights) {
+                                   const std::vector<float>& weights, WedgeExtras& extras) {
     Replay replay(mesh, values, input, weights);
     std::vector<bool> is_removed(mesh.triangle_count(), false);
     for (const std::uint32_t t : record.removed) is_removed[t] = true;
@@ -214,6 +227,8 @@ ProgressiveMesh finish_with_wedges(const Record& record, const WedgeRecord& wedg
     }
     replay.drop_idle_moves();
     replay.share_out(input);
+    replay.share_out_poses(values.plain(), extras.posed);
+    extras.births = replay.births();
     return std::move(replay.out);
 }
 

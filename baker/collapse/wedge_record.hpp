@@ -43,9 +43,21 @@ struct WedgeRecord {
     std::uint32_t own_ = 0;  // of the step that is open
 };
 
+/// Where each pose has the vertices of a record: places at birth, and of moves.
+struct PosedRecord {
+    std::vector<Float3> positions, moves;
+};
+
+/// What else the end of a record tells.
+struct WedgeExtras {
+    std::vector<PosedRecord> posed;  ///< One a pose.
+    std::vector<std::uint32_t>
+        births;  ///< Per vertex of the input, its number; kNoVertex if no triangle has it.
+};
+
 /// Record::finish() of a mesh with wedges. `input` names the attributes; `weights` are those of points.
 ProgressiveMesh finish_with_wedges(const Record& record, const WedgeRecord& wedges, const StarMesh& mesh,
                                    const WedgeValues& values, const Mesh& input,
-                                   const std::vector<float>& weights);
+                                   const std::vector<float>& weights, WedgeExtras& extras);
 
 }  // namespace vsplit::bake

@@ -56,7 +56,8 @@ void normalise(float* v) {
 
 }  // namespace
 
-WedgeValues::WedgeValues(const Mesh& mesh, const AttributeWeights& weights) {
+WedgeValues::WedgeValues(const Mesh& mesh, const AttributeWeights& weights, const PoseSets& poses)
+    : poser_(mesh, poses) {
     for (const Attribute& attribute : mesh.attributes) {
         double weight = 0;
         switch (attribute.semantic) {
@@ -93,6 +94,8 @@ WedgeValues::WedgeValues(const Mesh& mesh, const AttributeWeights& weights) {
         columns_.push_back({attribute.semantic, stride_, attribute.components, weight});
         stride_ += attribute.components;
     }
+    plain_ = stride_;
+    stride_ += std::uint32_t(3 * poser_.count());
     values_.resize(std::size_t{stride_} * mesh.positions.size());
     for (std::size_t i = 0; i < columns_.size(); ++i) {
         const std::size_t components = columns_[i].components;
@@ -100,6 +103,7 @@ WedgeValues::WedgeValues(const Mesh& mesh, const AttributeWeights& weights) {
             std::copy_n(mesh.attributes[i].values.begin() + std::ptrdiff_t(components * v), components,
                         values_.begin() + std::ptrdiff_t(stride_ * v + columns_[i].begin));
     }
+    for (std::uint32_t v = 0; v < mesh.positions.size(); ++v) repose(v, mesh.positions[v], of(v));
     originals_ = values_;
     places_ = mesh.positions;
     samples_.resize(mesh.positions.size());
@@ -194,6 +198,30 @@ void WedgeValues::mix_joints(const Blend& blend, std::span<float> out) const {
             out[columns_[c + 1].begin + i] = next < found.size() ? float(found[next].weight / sum) : 0.0f;
         }
     }
+}
+
+namespace {
+
+bool is_motion(Semantic semantic) {
+    return semantic == Semantic::kJoints || semantic == Semantic::kJointWeights ||
+           semantic == Semantic::kMorphOffset;
+}
+
+}  // namespace
+
+bool WedgeValues::moves_alike(std::span<const float> a, std::span<const float> b) const {
+    return std::all_of(columns_.begin(), columns_.end(), [&](const Column& column) {
+        const auto begin = std::ptrdiff_t(column.begin), end = begin + std::ptrdiff_t(column.components);
+        return !is_motion(column.semantic) ||
+               std::equal(a.begin() + begin, a.begin() + end, b.begin() + begin);
+    });
+}
+
+void WedgeValues::copy_motion(std::span<const float> from, std::span<float> to) const {
+    for (const Column& column : columns_)
+        if (is_motion(column.semantic))
+            std::copy_n(from.begin() + std::ptrdiff_t(column.begin), column.components,
+                        to.begin() + std::ptrdiff_t(column.begin));
 }
 
 double WedgeValues::apart2(std::span<const float> old, const Blend& blend, double extent,

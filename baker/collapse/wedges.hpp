@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "edge_star.hpp"
+#include "poser.hpp"
 #include "star_mesh.hpp"
 #include "vsplit/bake/collapse.hpp"
 #include "vsplit/mesh.hpp"
@@ -20,9 +21,22 @@ namespace vsplit::bake {
 /// What the wedges carry: all attributes of one after each other.
 class WedgeValues {
   public:
-    WedgeValues(const Mesh& mesh, const AttributeWeights& weights);
+    WedgeValues(const Mesh& mesh, const AttributeWeights& weights, const PoseSets& poses);
 
+    /// All values of a wedge: those of attributes, and then where each pose puts it.
     std::uint32_t stride() const { return stride_; }
+    /// Those of attributes.
+    std::uint32_t plain() const { return plain_; }
+    /// Poses of a wedge; their places begin at plain(), three values each.
+    std::size_t poses_of(std::uint32_t wedge) const { return poser_.count_of(wedge); }
+    std::size_t most_poses() const { return poser_.count(); }
+    /// Makes a row's posed places anew, for a wedge whose place or attributes are new.
+    void repose(std::uint32_t wedge, const Float3& place, std::span<float> row) const {
+        if (stride_ > plain_) poser_.pose(wedge, place, row.first(plain_), row.subspan(plain_));
+    }
+    static Double3 posed(std::span<const float> row, std::size_t begin) {
+        return {double(row[begin]), double(row[begin + 1]), double(row[begin + 2])};
+    }
     std::span<float> of(std::uint32_t wedge) {
         return {values_.data() + std::size_t{stride_} * wedge, stride_};
     }
@@ -38,6 +52,9 @@ class WedgeValues {
     void mix(const Blend& blend, std::span<float> out) const;
     /// Copies what is linear, that is all but joints, their weights and handedness; unit vectors stay so.
     void take_linear(std::span<const float> from, std::span<float> out) const;
+    /// What moves a vertex: joints, their weights, morph offsets.
+    bool moves_alike(std::span<const float> a, std::span<const float> b) const;
+    void copy_motion(std::span<const float> from, std::span<float> to) const;
     /// How far `old` is from a blend, as a squared length: see AttributeWeights. `extent` is the size of the
     /// triangles around, working units, of which one object unit makes `scale`.
     double apart2(std::span<const float> old, const Blend& blend, double extent, double scale) const;
@@ -67,7 +84,8 @@ class WedgeValues {
     void mix_joints(const Blend& blend, std::span<float> out) const;
 
     std::vector<Column> columns_;
-    std::uint32_t stride_ = 0;
+    std::uint32_t stride_ = 0, plain_ = 0;
+    Poser poser_;
     std::vector<float> values_, originals_;
     std::vector<Float3> places_;
     std::vector<std::array<std::uint32_t, kSamples>> samples_;

@@ -205,6 +205,10 @@ void AccessorReader::read(std::uint64_t i, std::span<float> out) const {
         out[c] = load_component(at + c / rows * column_ + c % rows * size, type_, normalised_);
 }
 
+std::uint32_t AccessorReader::integer(std::uint64_t i, std::uint64_t c) const {
+    return load_index(element(i) + c * component_size(type_), type_);
+}
+
 std::uint32_t AccessorReader::index(std::uint64_t i) const {
     return load_index(element(i), type_);
 }

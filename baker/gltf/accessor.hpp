@@ -33,6 +33,8 @@ class AccessorReader {
     void read(std::uint64_t i, std::span<float> out) const;
     /// Element i < count() of a scalar unsigned accessor.
     std::uint32_t index(std::uint64_t i) const;
+    /// Component c < components() of element i < count() of an unsigned accessor that is no matrix.
+    std::uint32_t integer(std::uint64_t i, std::uint64_t c) const;
 
   private:
     const std::byte* element(std::uint64_t i) const;

@@ -13,6 +13,7 @@
 #include "primitive.hpp"
 #include "scene_document.hpp"
 #include "scene_nodes.hpp"
+#include "scene_poses.hpp"
 #include "vsplit/bake/scene.hpp"
 #include "weight_channel.hpp"
 
@@ -356,9 +357,18 @@ Result<Scene> read_whole(std::span<const std::byte> bytes, const std::string& fo
                                                options.weight_channel + "; its attributes are " +
                                                attributes_there(document->model));
     reader.measure(*use);
+    const auto instances = place_meshes(*document);
+    if (!instances.ok()) return instances.error();
+    for (const Instance& instance : *instances)
+        for (std::uint32_t part = 0; part < reader.scene.parts.size(); ++part)
+            if (reader.scene.parts[part].mesh == instance.mesh)
+                reader.scene.places.push_back({part, instance.matrix});
     Scene scene = std::move(reader.scene);
     auto remains = remaining_document(bytes, *document, folder, *use, reader.taken, scene.notes);
     if (!remains.ok()) return remains.error();
+    if (options.poses > 0)
+        sample_poses(*document, remains->root, *instances, *use, std::min<std::size_t>(options.poses, 1024),
+                     scene);
     scene.report.format = document->binary ? "glTF (binary)" : "glTF (JSON)";
     scene.document = std::make_shared<SceneDocument>(std::move(*remains));
     return scene;

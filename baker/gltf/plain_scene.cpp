@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "attribute_set.hpp"
 #include "pack.hpp"
@@ -9,6 +10,38 @@
 #include "vsplit/bake/scene.hpp"
 
 namespace vsplit::bake {
+
+namespace {
+
+/// One more than the largest joint; 0 without, or for numbers that no skin has.
+std::size_t joints_of(const Mesh& mesh) {
+    float most = -1;
+    for (const Attribute& attribute : mesh.attributes)
+        if (attribute.semantic == Semantic::kJoints)
+            for (const float joint : attribute.values) most = std::max(most, joint);
+    return most >= 0 && most <= 65535 ? std::size_t(most) + 1 : 0;
+}
+
+/// Joints that stand still, in the place of those that moved the mesh.
+void add_skin(SceneDocument& document, std::size_t joints) {
+    OrderedJson numbers = OrderedJson::array(), others = OrderedJson::array();
+    OrderedJson& nodes = document.root["nodes"];
+    for (std::size_t j = 0; j < joints; ++j) {
+        numbers.push_back(j + 1);
+        if (j > 0) others.push_back(j + 1);
+        nodes.push_back({{"name", "joint " + std::to_string(j)}});
+    }
+    if (!others.empty()) nodes[1]["children"] = std::move(others);
+    nodes[0]["skin"] = 0;
+    document.root["scenes"][0]["nodes"].push_back(1);
+    document.root["skins"] = OrderedJson::array({{{"joints", std::move(numbers)}}});
+    std::vector<float> matrices(16 * joints, 0.0f);
+    for (std::size_t j = 0; j < joints; ++j)
+        for (std::size_t k = 0; k < 4; ++k) matrices[16 * j + 5 * k] = 1;
+    document.inverse_bind.push_back(std::move(matrices));
+}
+
+}  // namespace
 
 Scene plain_scene(const Mesh& mesh) {
     Scene scene;
@@ -41,6 +74,12 @@ Scene plain_scene(const Mesh& mesh) {
             primitive.targets = std::max(primitive.targets, std::uint32_t(std::stoul(digits)) + 1);
         }
     }
+    const std::size_t joints = joints_of(mesh);
+    if (joints == 0)
+        std::erase_if(primitive.attributes, [&](const StoredAttribute& stored) {
+            const Semantic semantic = mesh.attributes[stored.attribute].semantic;
+            return semantic == Semantic::kJoints || semantic == Semantic::kJointWeights;
+        });
     scene.primitives.assign(groups, primitive);
     OrderedJson primitives = OrderedJson::array();
     for (std::uint32_t g = 0; g < groups; ++g) {
@@ -56,6 +95,7 @@ Scene plain_scene(const Mesh& mesh) {
     root["scene"] = 0;
     root["scenes"] = OrderedJson::array({{{"nodes", OrderedJson::array({0})}}});
     root["nodes"] = OrderedJson::array({{{"mesh", 0}}});
+    if (joints > 0) add_skin(*document, joints);
     root["meshes"] = OrderedJson::array({{{"primitives", std::move(primitives)}}});
     root["materials"] = OrderedJson::array_t(groups, material);
     scene.document = std::move(document);

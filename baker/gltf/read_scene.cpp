@@ -8,7 +8,7 @@
 
 #include "document.hpp"
 #include "primitive.hpp"
-#include "transforms.hpp"
+#include "scene_nodes.hpp"
 #include "vsplit/bake/gltf.hpp"
 #include "weight_channel.hpp"
 
@@ -17,51 +17,6 @@ namespace {
 
 Error fault(ErrorCode code, std::string message) {
     return {code, std::move(message), Error::kNowhere, 0};
-}
-
-struct Instance {
-    std::size_t mesh;
-    Matrix matrix;
-};
-
-/// The scene's meshes in depth-first order, which is the file's.
-Result<std::vector<Instance>> place_meshes(const Document& document) {
-    const tinygltf::Model& model = document.model;
-    const std::size_t count = model.nodes.size();
-    std::vector<int> roots;
-    if (!model.scenes.empty()) {
-        roots = model.scenes[std::size_t(std::max(model.defaultScene, 0))].nodes;
-    } else {
-        std::vector<std::uint8_t> is_child(document.is_lod);
-        for (const tinygltf::Node& node : model.nodes)
-            for (const int child : node.children) is_child[std::size_t(child)] = 1;
-        for (std::size_t n = 0; n < count; ++n)
-            if (is_child[n] == 0) roots.push_back(int(n));
-        // Where nobody is a root everybody is on a cycle, which the walk below must get to see.
-        if (roots.empty() && count > 0) roots.push_back(0);
-    }
-    struct Step {
-        std::size_t node;
-        Matrix parent;
-    };
-    std::vector<Step> stack;
-    for (auto root = roots.rbegin(); root != roots.rend(); ++root)
-        stack.push_back({std::size_t(*root), kIdentity});
-    std::vector<std::uint8_t> seen(count, 0);
-    std::vector<Instance> out;
-    while (!stack.empty()) {
-        const Step step = stack.back();
-        stack.pop_back();
-        if (seen[step.node]++ != 0)
-            return fault(ErrorCode::kMalformed,
-                         object_name("nodes", step.node) + " is reached twice: the nodes are no tree");
-        const tinygltf::Node& node = model.nodes[step.node];
-        const Matrix matrix = product(step.parent, local_matrix(node));
-        if (node.mesh >= 0) out.push_back({std::size_t(node.mesh), matrix});
-        for (auto child = node.children.rbegin(); child != node.children.rend(); ++child)
-            stack.push_back({std::size_t(*child), matrix});
-    }
-    return out;
 }
 
 /// The scene as it is put together.

@@ -83,6 +83,46 @@ BindPose bind_pose(Document& document, const tinygltf::Skin& skin, const std::ve
 
 }  // namespace
 
+Result<std::vector<Instance>> place_meshes(const Document& document) {
+    const tinygltf::Model& model = document.model;
+    const std::size_t count = model.nodes.size();
+    std::vector<int> roots;
+    if (!model.scenes.empty()) {
+        roots = model.scenes[std::size_t(std::max(model.defaultScene, 0))].nodes;
+    } else {
+        std::vector<std::uint8_t> is_child(document.is_lod);
+        for (const tinygltf::Node& node : model.nodes)
+            for (const int child : node.children) is_child[std::size_t(child)] = 1;
+        for (std::size_t n = 0; n < count; ++n)
+            if (is_child[n] == 0) roots.push_back(int(n));
+        // Where nobody is a root everybody is on a cycle, which the walk below must get to see.
+        if (roots.empty() && count > 0) roots.push_back(0);
+    }
+    struct Step {
+        std::size_t node;
+        Matrix parent;
+    };
+    std::vector<Step> stack;
+    for (auto root = roots.rbegin(); root != roots.rend(); ++root)
+        stack.push_back({std::size_t(*root), kIdentity});
+    std::vector<std::uint8_t> seen(count, 0);
+    std::vector<Instance> out;
+    while (!stack.empty()) {
+        const Step step = stack.back();
+        stack.pop_back();
+        if (seen[step.node]++ != 0)
+            return Error{ErrorCode::kMalformed,
+                         object_name("nodes", step.node) + " is reached twice: the nodes are no tree",
+                         Error::kNowhere, 0};
+        const tinygltf::Node& node = model.nodes[step.node];
+        const Matrix matrix = product(step.parent, local_matrix(node));
+        if (node.mesh >= 0) out.push_back({std::size_t(node.mesh), step.node, matrix});
+        for (auto child = node.children.rbegin(); child != node.children.rend(); ++child)
+            stack.push_back({std::size_t(*child), matrix});
+    }
+    return out;
+}
+
 Result<SceneUse> survey_nodes(Document& document) {
     const tinygltf::Model& model = document.model;
     const auto world = world_matrices(model);

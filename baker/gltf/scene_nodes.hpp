@@ -25,6 +25,16 @@ struct SceneUse {
     std::vector<std::uint8_t> only_lod;
 };
 
+/// A node of the default scene that shows a mesh.
+struct Instance {
+    std::size_t mesh, node;
+    Matrix matrix;  ///< Of the node, skinned or not.
+};
+
+/// Those of the default scene (the first one if none is called so, all root nodes if there are no scenes), in
+/// depth-first order, which is the file's. Errors: kMalformed if the nodes are no forest.
+Result<std::vector<Instance>> place_meshes(const Document& document);
+
 /// A skinned mesh stands where its joints put it, whatever its node's transform is (glTF 2.0,
 /// section 3.7.3.3): the largest of its joints counts. Errors: kMalformed if the nodes are no forest.
 Result<SceneUse> survey_nodes(Document& document);

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "vsplit/bake/poses.hpp"
 #include "vsplit/bake/progress.hpp"
 #include "vsplit/mesh.hpp"
 #include "vsplit/progressive_mesh.hpp"
@@ -65,6 +66,10 @@ struct CollapseOptions {
     /// Vertices of different parts never share a point, even if their positions are the same: empty, or one
     /// number per vertex. Only meshes with attributes or groups are asked for shared points at all.
     std::vector<std::uint32_t> part_of{};
+    /// Poses besides the bind pose: what the surface departs from the posed input is counted where it is more
+    /// than in the bind pose, and recorded errors are the largest of all poses. For meshes with attributes;
+    /// cost `paper` is priced without. `set_of` must be empty or have one number per vertex.
+    PoseSets poses{};
     /// Guard: a triangle's normal may turn by at most the angle of this cosine in one collapse.
     double min_normal_cosine = 0.4;
     /// Guard: least quality 4 sqrt(3) area / (sum of squared edges) of a changed triangle, unless it was
@@ -81,11 +86,12 @@ struct CollapseOptions {
 /// What happened, for people and --json.
 struct CollapseReport {
     std::uint64_t collapses = 0;
-    std::uint64_t components = 0;            ///< Of the input.
-    std::uint64_t unused_vertices = 0;       ///< That no triangle uses: left out of the record.
-    std::uint64_t degenerate_triangles = 0;  ///< With two corners at one point: left out of the record.
-    std::uint64_t duplicate_triangles = 0;   ///< Same three vertices as another, either way round: follow it.
-    std::uint64_t components_vanished = 0;   ///< Left out of the base mesh; one split brings each back.
+    std::uint64_t components = 0;       ///< Of the input.
+    std::uint64_t unused_vertices = 0;  ///< That no triangle uses: left out of the record.
+    /// With two corners at one point: only the full mesh has them, by a last split.
+    std::uint64_t degenerate_triangles = 0;
+    std::uint64_t duplicate_triangles = 0;  ///< Same three vertices as another, either way round: follow it.
+    std::uint64_t components_vanished = 0;  ///< Left out of the base mesh; one split brings each back.
     std::uint64_t fixed_vertices =
         0;  ///< Non-manifold corners, locked, or of infinite weight: never removed.
     std::string

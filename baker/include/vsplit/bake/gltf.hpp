@@ -26,6 +26,9 @@ struct GltfOptions {
     std::uint64_t max_triangles = std::uint64_t{1} << 26;
     /// Floats in all attributes together; more: kLimit. Only parse_scene reads attributes.
     std::uint64_t max_attribute_values = std::uint64_t{1} << 30;
+    /// Moments of the animations to sample as poses of skinned and morphing meshes, up to 1024; 0: none. Only
+    /// parse_scene does.
+    std::size_t poses = 0;
 };
 
 /// All triangle primitives (lists, strips, fans) of the default scene (the first one if none is called so,

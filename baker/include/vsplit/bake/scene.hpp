@@ -15,6 +15,7 @@
 
 #include "vsplit/bake/gltf.hpp"
 #include "vsplit/bake/meshes.hpp"
+#include "vsplit/bake/poses.hpp"
 #include "vsplit/mesh.hpp"
 #include "vsplit/result.hpp"
 
@@ -43,6 +44,15 @@ struct ScenePart {
     std::uint32_t first_vertex = 0, end_vertex = 0;
 };
 
+/// A node of the default scene that shows a part.
+struct PlacedPart {
+    std::uint32_t part = 0;  ///< In Scene::parts.
+    /// From the mesh's coordinates as the file has them to the world, column-major; of a skinned one, too,
+    /// the node's.
+    std::array<double, 16> matrix{};
+    std::vector<Pose> poses{};  ///< From and to the world's coordinates, where the matrix puts it.
+};
+
 /// The document behind a scene: whatever is not triangles. Opaque.
 struct SceneDocument;
 
@@ -60,6 +70,7 @@ struct Scene {
     std::vector<std::uint32_t> part_of;  ///< Per vertex of `mesh`, its number in `parts`.
     std::vector<ScenePart> parts;
     std::vector<ScenePrimitive> primitives;
+    std::vector<PlacedPart> places;  ///< Depth first. Not known of a progressive GLB.
     double radius =
         0;  ///< Of a ball around all places of all parts, in the world. About right for skinned ones.
     /// Errors of `mesh` times this are at least what they are anywhere in the world; from 1 to 2.
@@ -67,6 +78,7 @@ struct Scene {
     MeshReport report;
     std::vector<std::string> notes;  ///< What was met and not carried along, for people.
     std::shared_ptr<const SceneDocument> document;
+    PoseSets poses;  ///< Of `mesh`, if GltfOptions::poses asked for them and there is an animation.
 };
 
 /// Reads a scene. What parse_gltf says of extensions, folders, limits and hostile bytes holds here too;
@@ -74,6 +86,18 @@ struct Scene {
 /// A scene without a triangle is kMalformed.
 Result<Scene> parse_scene(std::span<const std::byte> bytes, const std::string& folder,
                           const GltfOptions& options = {});
+
+/// The scene's triangles where its nodes place them, as one mesh in world units, each place after the other:
+/// what a .pmesh without a scene around it has. Normals, tangents and morph offsets turn with their node, a
+/// mirroring node turns triangles over and handedness about. Skins and morph targets are in their bind pose,
+/// where the node stands. Groups are numbers of materials in the document, those without one getting the
+/// number after the last; none if all is one material. Colours are white where a primitive has none. Needs
+/// `scene.mesh` and `scene.places`. Errors: kMalformed if no place shows a triangle, kLimit for more than
+/// `max_triangles`.
+Result<Mesh> placed_mesh(const Scene& scene, std::uint64_t max_triangles = std::uint64_t{1} << 26);
+
+/// The poses of what placed_mesh() gives.
+PoseSets placed_poses(const Scene& scene);
 
 /// Where a node of the scene that the document shows has a part.
 struct ScenePlace {
@@ -99,7 +123,8 @@ struct SceneMaterial {
 std::vector<SceneMaterial> scene_materials(const Scene& scene);
 
 /// A scene of one node around a mesh that came without one, as from a .pmesh: a primitive and a plain
-/// material a group, attributes as floats. Its `mesh` has the attributes' names only.
+/// material a group, attributes as floats; where there are joints, a skin of as many nodes that stand where
+/// they are. Its `mesh` has the attributes' names only.
 Scene plain_scene(const Mesh& mesh);
 
 /// How encode_scene writes geometry.
