@@ -93,7 +93,8 @@ void Collapser::prepare(const Mesh& mesh) {
         state_.weights.reserve(state_.mesh.vertex_count());
         for (const std::uint32_t v : state_.mesh.input_vertices()) state_.weights.push_back(mesh.weights[v]);
     }
-    if (options.placement == Placement::kEndpoint) state_.batch_of.assign(state_.mesh.vertex_count(), 0);
+    if (options.placement == Placement::kEndpoint && options.cost != Cost::kPaper)
+        state_.batch_of.assign(state_.mesh.vertex_count(), 0);
     lock();
     for (std::uint32_t v = 0; v < state_.mesh.vertex_count() && state_.components.count() > 1; ++v)
         if (state_.mesh.kind(v) != VertexKind::kDead && !state_.weights.empty() && state_.weights[v] > 1)
