@@ -47,4 +47,9 @@ struct EdgeStar {
     }
 };
 
+/// The end that is nearer to a place; the first, if they are the same.
+inline std::uint32_t nearer_end(const EdgeStar& star, Double3 place) {
+    return length2(place - star.pv) < length2(place - star.pu) ? star.v : star.u;
+}
+
 }  // namespace vsplit::bake

@@ -178,4 +178,20 @@ class StarMesh {
 /// larger than kLargeStar.
 void neighbours_of(const StarMesh& mesh, std::uint32_t v, std::vector<Neighbour>& out);
 
+/// Visits each neighbour of `v`; those that two triangles name come once where the fan is closed and
+/// consistently oriented.
+template <class Visit>
+void visit_neighbours(const StarMesh& mesh, std::uint32_t v, std::vector<Neighbour>& scratch,
+                      const Visit& visit) {
+    if (mesh.kind(v) == VertexKind::kInner) {
+        for (const std::uint32_t t : mesh.star(v)) {
+            const Triangle& c = mesh.triangle(t);
+            visit(c[0] == v ? c[1] : c[1] == v ? c[2] : c[0]);
+        }
+        return;
+    }
+    neighbours_of(mesh, v, scratch);
+    for (const Neighbour& n : scratch) visit(n.vertex);
+}
+
 }  // namespace vsplit::bake
