@@ -119,7 +119,9 @@ void add_render(CLI::App& app, int& exit) {
         ->required()
         ->type_name("IN");
     command->output.add_to(*sub, "The .png to write");
-    auto* ratio = sub->add_option("--ratio", command->ratio, "The finest level with so many of the triangles")
+    auto* ratio = sub->add_option("--ratio", command->ratio,
+                                  "The finest level with so many of the triangles, 0 to 1, or as 40%")
+                      ->transform(percents())
                       ->check(CLI::Range(0.0, 1.0))
                       ->capture_default_str();
     sub->add_option("--error", command->error, "The coarsest level with at most this error, object's units")
