@@ -142,7 +142,7 @@ Result<MarkReport> apply_marks(const MarkFlags& flags, const std::string& input,
                 }
     }
     report.automatic = bake::automatic_weights(bake::edge_errors(mesh));
-    const double factor = report.automatic.factor(options.cost);
+    const double factor = report.automatic.factor();
     for (std::size_t r = 0; r < marks.regions.size(); ++r)
         report.regions[r].weight = marks.regions[r].weight.value_or(factor);
     mesh.weights = bake::weights_of(marks, factor);

@@ -33,6 +33,16 @@ double batch_quantile(std::uint32_t vertices) {
     return kLeast + t * (kMost - kLeast);
 }
 
+/// What a painted weight multiplies costs by. Cost `quadric` falls with about the third power of how many
+/// vertices there are for an area (squared distance, times an area), so that by its cube a weight tells how
+/// many times as dense an area stays. Cost `paper` takes it as it is.
+float cost_weight(const CollapseOptions& options, float painted) {
+    constexpr float kMost = 1e6f;  // its cube is far from where floats end
+    if (options.cost == Cost::kPaper) return painted;
+    const float w = std::min(painted, kMost);
+    return w * w * w;
+}
+
 double seconds_now() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
@@ -152,7 +162,7 @@ void Collapser::shape_all() {
                               rebuild_shape(mesh, v, state_.options.boundary_weight, scratch, &bends);
                               std::copy_n(mesh.vertex(v).area, 3, state_.histories[v].normal);
                               if (!state_.weights.empty() && std::isfinite(state_.weights[v]))
-                                  mesh.vertex(v).weight = state_.weights[v];
+                                  mesh.vertex(v).weight = cost_weight(state_.options, state_.weights[v]);
                               state_.histories[v].witness = to_float(mesh.position(v));
                               // Of two triangles that lie back on each other, one departs much from any
                               // direction.

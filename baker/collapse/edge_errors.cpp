@@ -59,11 +59,11 @@ AutomaticWeights automatic_weights(const EdgeErrors& errors) {
     return weights;
 }
 
-double AutomaticWeights::factor(Cost cost) const {
+double AutomaticWeights::factor() const {
     constexpr double kMost = 1e6;
     if (!(mark > 0)) return 1;
     const double lift = errors.median > 0 ? mark / errors.median : kMost;
-    return std::clamp(cost == Cost::kQuadric ? lift * lift * lift : lift, 1.0, kMost);
+    return std::clamp(lift, 1.0, kMost);
 }
 
 }  // namespace vsplit::bake

@@ -25,7 +25,7 @@ enum class VertexKind : std::uint8_t {
 /// order lets four vertices be read at once, in four transpositions.
 struct alignas(64) Vertex {
     Float3 position;        ///< Of the input, or rounded to what will be stored.
-    float weight = 1;       ///< Painted; 1 for an infinite one, whose vertex is fixed anyway.
+    float weight = 1;       ///< Of costs, by the painted one; 1 for an infinite one, whose vertex is fixed anyway.
     float quadric[6] = {};  ///< Sum over triangles of area^1.5 n nT, plus boundary terms: xx xy xz yy yz zz.
                             ///< Relative to the vertex.
     float area[3] = {};     ///< Sum over triangles of the area vector.

@@ -193,7 +193,7 @@ Result<std::vector<KeepResult>> find_weights(const Mesh& mesh, Marks& marks, std
                   quick,
                   progress,
                   marks,
-                  automatic_weights(edge_errors(mesh)).factor(options.cost),
+                  automatic_weights(edge_errors(mesh)).factor(),
                   std::vector<char>(mesh.positions.size(), 0)};
     for (const Triangle& t : mesh.triangles)
         for (const std::uint32_t v : t) search.used[v] = 1;

@@ -112,18 +112,16 @@ TEST_CASE("Automatic weights: the paper's rule, whatever the units") {
     const AutomaticWeights automatic = automatic_weights(errors);
     REQUIRE(automatic.initial == (errors.smallest + errors.largest) / 2);
     REQUIRE(automatic.mark == (automatic.initial + errors.largest) / 2);
-    REQUIRE(automatic.factor(Cost::kPaper) > 1);
+    REQUIRE(automatic.factor() > 1);
     for (Float3& p : mesh.positions) p = {p.x * 1024, p.y * 1024, p.z * 1024};
     const EdgeErrors scaled = edge_errors(mesh);
     REQUIRE(scaled.largest == Approx(1024 * errors.largest));
-    REQUIRE(automatic_weights(scaled).factor(Cost::kPaper) == Approx(automatic.factor(Cost::kPaper)));
+    REQUIRE(automatic_weights(scaled).factor() == Approx(automatic.factor()));
     for (const auto& [name, any] : mesh_family()) {
         CAPTURE(name);
         const AutomaticWeights weights = automatic_weights(edge_errors(any));
-        for (const Cost cost : {Cost::kPaper, Cost::kQuadric}) {
-            const double factor = weights.factor(cost);
-            CHECK((factor >= 1 && factor <= 1e6));
-        }
+        const double factor = weights.factor();
+        CHECK((factor >= 1 && factor <= 1e6));
     }
 }
 

@@ -147,11 +147,11 @@ void mesh_alone(Run& run, const Mesh& whale, Cost cost) {
     marks.regions.push_back({"head", {}, 0xE6550D});
     for (const std::uint32_t v : foremost(whale, kMarked)) marks.region[v] = 1;
     Mesh painted = whale;
-    painted.weights = weights_of(marks, automatic.factor(cost));
+    painted.weights = weights_of(marks, automatic.factor());
     const ProgressiveMesh record = baked(painted, cost);
     auto ruler = ruler::Ruler::over(whale);
     fmt::print("\n### Table III, the mesh alone, cost {}, automatic weight {:.1f}\n\n",
-               cost == Cost::kPaper ? "paper" : "quadric", automatic.factor(cost));
+               cost == Cost::kPaper ? "paper" : "quadric", automatic.factor());
     head();
     print_row("original", measure(record, whale, marks, kVertices, *ruler), "2645, 568, 2077");
     const Row at60 = measure(record, whale, marks, kAt60, *ruler),
@@ -191,13 +191,13 @@ void level_of_a_finer_one(Run& run, const Mesh& fine, const ProgressiveMesh& rec
             marks.region[origins[v]] = 1;
     const AutomaticWeights automatic = automatic_weights(edge_errors(fine));
     Mesh painted = fine;
-    painted.weights = weights_of(marks, automatic.factor(cost));
+    painted.weights = weights_of(marks, automatic.factor());
     const ProgressiveMesh again = baked(painted, cost);
     auto ruler = ruler::Ruler::over(fine);
     fmt::print(
         "\n### Table III, marked on a level of {} vertices of a whale of {}, cost {}, automatic weight "
         "{:.1f}\n\n",
-        kVertices, fine.positions.size(), cost == Cost::kPaper ? "paper" : "quadric", automatic.factor(cost));
+        kVertices, fine.positions.size(), cost == Cost::kPaper ? "paper" : "quadric", automatic.factor());
     head();
     print_row("full model", measure(again, fine, marks, fine.positions.size(), *ruler), "not told");
     fmt::print("| as marked | {} | {} | {} | {} | {:.1f} % | | | | | 2645, 568, 2077 |\n", kVertices, kMarked,
@@ -224,13 +224,13 @@ void level_of_a_finer_one(Run& run, const Mesh& fine, const ProgressiveMesh& rec
 void table_two(const Mesh& whale, const Mesh& ocean) {
     fmt::print(
         "### Table II\n\n| model | smallest error | median | largest error | initial weight | mark weight | "
-        "factor, cost paper | cost quadric | paper (smallest, largest, initial, mark) |\n"
-        "| --- | --: | --: | --: | --: | --: | --: | --: | --- |\n");
+        "factor | paper (smallest, largest, initial, mark) |\n"
+        "| --- | --: | --: | --: | --: | --: | --: | --- |\n");
     const auto row = [](const char* name, const Mesh& mesh, const char* paper) {
         const AutomaticWeights w = automatic_weights(edge_errors(mesh));
-        fmt::print("| {} | {:.5f} | {:.5f} | {:.5f} | {:.6f} | {:.6f} | {:.1f} | {:.1f} | {} |\n", name,
-                   w.errors.smallest, w.errors.median, w.errors.largest, w.initial, w.mark,
-                   w.factor(Cost::kPaper), w.factor(Cost::kQuadric), paper);
+        fmt::print("| {} | {:.5f} | {:.5f} | {:.5f} | {:.6f} | {:.6f} | {:.1f} | {} |\n", name,
+                   w.errors.smallest, w.errors.median, w.errors.largest, w.initial, w.mark, w.factor(),
+                   paper);
     };
     row("whale", whale, "0.0, 0.38589, 0.194735, 0.287543");
     row("ocean", ocean, "0.0, 0.78723, 0.287543, 0.589832");

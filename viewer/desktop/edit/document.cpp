@@ -251,11 +251,11 @@ bool Document::select_material(std::uint32_t triangle, std::uint8_t region) {
 }
 
 double Document::weight_of(std::size_t region) const {
-    return painting_.marks().regions[region - 1].weight.value_or(automatic_.factor(options_.cost));
+    return painting_.marks().regions[region - 1].weight.value_or(automatic_.factor());
 }
 
 std::vector<float> Document::weights() const {
-    return bake::weights_of(painting_.marks(), automatic_.factor(options_.cost));
+    return bake::weights_of(painting_.marks(), automatic_.factor());
 }
 
 Mesh Document::painted() const {
@@ -331,7 +331,7 @@ std::vector<std::byte> Document::encode_marks() const {
 std::vector<std::byte> Document::encode_weights() const {
     const bake::Marks marks =
         bake::marks_of_file(painting_.marks(), source_.vertex_of, source_.file_vertices);
-    return bake::encode_weights(bake::weights_of(marks, automatic_.factor(options_.cost)));
+    return bake::encode_weights(bake::weights_of(marks, automatic_.factor()));
 }
 
 Status Document::load_marks(std::span<const std::byte> bytes) {

@@ -111,9 +111,10 @@ struct CollapseResult {
 ///
 /// Collapses edges by ascending cost until none is left that keeps the topology, recording each. `mesh` must
 /// be sound (mesh_fault() null): anything else is kArgument. Weights of the mesh (painted; 1 if none)
-/// multiply the cost of their vertices, average on a collapse, and a vertex of infinite weight never moves
-/// nor goes. Vertices that no triangle uses are left out and counted. The result is the same for any number
-/// of threads. Works on up to 2^30 triangles; memory about 180 bytes a triangle.
+/// multiply the cost of their vertices (kPaper; kQuadric: their third power does, so that a weight tells
+/// about how many times as dense a place stays), average on a collapse, and a vertex of infinite weight never
+/// moves nor goes. Vertices that no triangle uses are left out and counted. The result is the same for any
+/// number of threads. Works on up to 2^30 triangles; memory about 180 bytes a triangle.
 Result<CollapseResult> collapse(const Mesh& mesh, const CollapseOptions& options = {},
                                 const Progress& progress = {});
 

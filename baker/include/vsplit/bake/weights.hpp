@@ -36,9 +36,8 @@ struct AutomaticWeights {
     EdgeErrors errors;
     double initial = 0, mark = 0;  ///< In the object's units, as the errors are.
     /// The mark's weight where 1 is what the rest weighs, as Mesh::weights has it: it makes of a median error
-    /// the mark weight. From 1 to 1e6; cubed for cost `quadric`, which grows with the size of triangles to
-    /// the 7th power, where `paper` grows with the 2nd to 3rd.
-    double factor(Cost cost) const;
+    /// the mark weight. From 1 to 1e6.
+    double factor() const;
 };
 AutomaticWeights automatic_weights(const EdgeErrors& errors);
 
