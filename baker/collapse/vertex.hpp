@@ -24,8 +24,8 @@ enum class VertexKind : std::uint8_t {
 /// All that pricing an edge needs of an end: one cache line, since what the loop waits for is memory. The
 /// order lets four vertices be read at once, in four transpositions.
 struct alignas(64) Vertex {
-    Float3 position;        ///< Of the input, or rounded to what will be stored.
-    float weight = 1;       ///< Of costs, by the painted one; 1 for an infinite one, whose vertex is fixed anyway.
+    Float3 position;   ///< Of the input, or rounded to what will be stored.
+    float weight = 1;  ///< Of costs, by the painted one; 1 for an infinite one, whose vertex is fixed anyway.
     float quadric[6] = {};  ///< Sum over triangles of area^1.5 n nT, plus boundary terms: xx xy xz yy yz zz.
                             ///< Relative to the vertex.
     float area[3] = {};     ///< Sum over triangles of the area vector.
