@@ -100,6 +100,7 @@ void ViewMesh::State::weigh(std::size_t from_vertex, std::size_t from_split) {
 /// What the file says of vertices whose weights splits may have changed since.
 std::vector<float> ViewMesh::State::weights_at_birth() const {
     std::vector<float> weights = mesh.weights;
+    if (weights.empty()) return weights;
     for (auto k = std::uint32_t(applied.size()); k-- > 0;)
         if (applied[k])
             for (std::uint32_t i = before(k).moves_end; i < mesh.splits[k].moves_end; ++i)

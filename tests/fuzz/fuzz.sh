@@ -2,7 +2,7 @@
 # SPDX-FileCopyrightText: 2026 The vsplit authors
 # SPDX-License-Identifier: MIT
 #
-# fuzz.sh MINUTES: builds the library and the fuzz targets with clang, AddressSanitizer and UndefinedBehaviorSanitizer,
+# fuzz.sh MINUTES [TARGET...]: builds the library and the fuzz targets with clang, AddressSanitizer and UndefinedBehaviorSanitizer,
 # and runs them for MINUTES in all, one after the other on every processor, from the golden and malformed files on.
 # What they find stays in build/fuzz.
 set -euo pipefail
@@ -24,7 +24,9 @@ for file in formats/golden/*.pmesh formats/malformed/*.pmesh; do
   # The last 32 bytes tell how the file arrives.
   { cat "$file"; printf 'abcdefghijklmnopqrstuvwxyz012345'; } >"$out/seeds/stream/$(basename "$file")"
 done
-for target in read stream round_trip; do
+shift
+[ $# -gt 0 ] || set -- read stream round_trip
+for target in "$@"; do
   mkdir -p "$out/corpus_$target"
   # -fork: what one finds, all go on from; a crash ends the run.
   "$out/build/$target" -fork="$workers" -ignore_ooms=0 -ignore_timeouts=0 -max_total_time="$seconds" -timeout=20 -rss_limit_mb=1024 -max_len=20000 -dict=tests/fuzz/pmesh.dict \
