@@ -9,6 +9,7 @@
 #include "collapser.hpp"
 #include "measure.hpp"
 #include "outliers.hpp"
+#include "stitch.hpp"
 
 namespace vsplit::bake {
 namespace {
@@ -104,6 +105,7 @@ Result<CollapseResult> collapse(const Mesh& mesh, const CollapseOptions& options
         return refuse("lock_features_degrees must be 0 to 180");
     if (!within(options.min_normal_cosine, -1, 1)) return refuse("min_normal_cosine must be -1 to 1");
     if (!within(options.min_quality, 0, 1)) return refuse("min_quality must be 0 to 1");
+    if (!within(options.stitch, 0, 0.01)) return refuse("stitch must be 0 to 0.01");
     const Error cancelled{ErrorCode::kCancelled, "cancelled", Error::kNowhere, 0};
     if (!options.part_of.empty() && options.part_of.size() != mesh.positions.size())
         return refuse("part_of must have one number per vertex");
@@ -117,6 +119,7 @@ Result<CollapseResult> collapse(const Mesh& mesh, const CollapseOptions& options
     WedgeExtras extras;
     double start = cpu_seconds();
     TriangleCopies copies;
+    std::vector<VertexMove> stitched;
     const auto record = [&](Collapser&& collapser) {
         if (!collapser.run(progress)) return false;
         result.mesh = collapser.finish(result.report, extras);
@@ -126,8 +129,14 @@ Result<CollapseResult> collapse(const Mesh& mesh, const CollapseOptions& options
     if (mesh.attributes.empty() && mesh.groups.empty()) {
         if (!record(Collapser(mesh, options))) return cancelled;
     } else {
-        const PointMesh points = points_of(mesh, options.part_of);
-        if (!record(Collapser(points, mesh, options))) return cancelled;
+        PointMesh points = points_of(mesh, options.part_of);
+        if (!options.lock_boundary) stitched = stitch_borders(points, mesh, options.stitch);
+        Mesh met;  // the mesh as it is stitched
+        if (!stitched.empty()) {
+            met = mesh;
+            for (const VertexMove& move : stitched) met.positions[move.vertex] = move.position;
+        }
+        if (!record(Collapser(points, stitched.empty() ? mesh : met, options))) return cancelled;
         result.report.unused_vertices = points.unused;
         result.report.degenerate_triangles = points.degenerate;
     }
@@ -159,7 +168,9 @@ Result<CollapseResult> collapse(const Mesh& mesh, const CollapseOptions& options
         if (options.calibrate && !in_poses.empty()) raise_errors(result.mesh, in_poses, order);
     }
     if (copies.any()) copies.expand(result.mesh);
+    unstitch(result.mesh, mesh, stitched, extras.births);
     result.report.duplicate_triangles = copies.count();
+    result.report.stitched_vertices = stitched.size();
     if (result.report.degenerate_triangles > 0) bring_back(result.mesh, mesh, extras.births);
     result.report.calibrate_cpu_seconds = cpu_seconds() - start;
     return result;
