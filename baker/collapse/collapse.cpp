@@ -119,26 +119,39 @@ Result<CollapseResult> collapse(const Mesh& mesh, const CollapseOptions& options
     WedgeExtras extras;
     double start = cpu_seconds();
     TriangleCopies copies;
-    std::vector<VertexMove> stitched;
     const auto record = [&](Collapser&& collapser) {
         if (!collapser.run(progress)) return false;
         result.mesh = collapser.finish(result.report, extras);
         copies = collapser.take_copies();
         return true;
     };
-    if (mesh.attributes.empty() && mesh.groups.empty()) {
-        if (!record(Collapser(mesh, options))) return cancelled;
-    } else {
-        PointMesh points = points_of(mesh, options.part_of);
-        if (!options.lock_boundary) stitched = stitch_borders(points, mesh, options.stitch);
-        Mesh met;  // the mesh as it is stitched
-        if (!stitched.empty()) {
-            met = mesh;
-            for (const VertexMove& move : stitched) met.positions[move.vertex] = move.position;
+    const bool plain = mesh.attributes.empty() && mesh.groups.empty();
+    std::vector<Stitch> stitched;
+    {
+        PointMesh points;
+        const double share = options.lock_boundary ? 0 : options.stitch;
+        if (!plain) {
+            points = points_of(mesh, options.part_of);
+        } else if (share > 0 && may_have_boundary(mesh)) {
+            points.mesh = mesh;
+            points.corners = mesh.triangles;
         }
-        if (!record(Collapser(points, stitched.empty() ? mesh : met, options))) return cancelled;
-        result.report.unused_vertices = points.unused;
-        result.report.degenerate_triangles = points.degenerate;
+        if (share > 0) stitched = stitch_borders(points, share);
+        extras.wants_births = !stitched.empty();
+        Mesh met;  // the input as it is stitched
+        if (!stitched.empty() && !plain) {
+            met = mesh;
+            for (const Stitch& s : stitched) met.positions[s.vertex] = mesh.positions[s.other];
+        }
+        const bool recorded = plain ? record(Collapser(stitched.empty() ? mesh : points.mesh, options))
+                                    : record(Collapser(points, stitched.empty() ? mesh : met, options));
+        if (!recorded) return cancelled;
+        if (plain) {
+            result.report.unused_vertices -= stitched.size();
+        } else {
+            result.report.unused_vertices = points.unused;
+            result.report.degenerate_triangles = points.degenerate;
+        }
     }
     result.mesh.origin = mesh.origin;
     result.report.collapse_cpu_seconds = cpu_seconds() - start;
@@ -168,7 +181,7 @@ Result<CollapseResult> collapse(const Mesh& mesh, const CollapseOptions& options
         if (options.calibrate && !in_poses.empty()) raise_errors(result.mesh, in_poses, order);
     }
     if (copies.any()) copies.expand(result.mesh);
-    unstitch(result.mesh, mesh, stitched, extras.births);
+    unstitch(result.mesh, mesh, stitched, extras.births, !plain);
     result.report.duplicate_triangles = copies.count();
     result.report.stitched_vertices = stitched.size();
     if (result.report.degenerate_triangles > 0) bring_back(result.mesh, mesh, extras.births);

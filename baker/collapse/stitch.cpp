@@ -7,6 +7,7 @@
 #include <limits>
 #include <unordered_map>
 
+#include "unsplit.hpp"
 #include "vec.hpp"
 
 namespace vsplit::bake {
@@ -17,7 +18,7 @@ constexpr double kOfEdge = 0.15;
 /// Points looked at in one cell of the grid; points that become one.
 constexpr std::size_t kMostAsked = 64, kMostMet = 16;
 /// Vertices that one split puts back.
-constexpr std::size_t kMovesOfSplit = 64;
+constexpr std::size_t kOfSplit = 64;
 
 Double3 to_double(const Float3& p) {
     return {p.x, p.y, p.z};
@@ -25,6 +26,23 @@ Double3 to_double(const Float3& p) {
 
 double apart(const Float3& a, const Float3& b) {
     return length(to_double(a) - to_double(b));
+}
+
+/// 0 for vertices where as many triangles come in along each edge as go out. For others a number that is
+/// hardly ever 0.
+std::vector<std::uint32_t> edge_balances(const Mesh& mesh) {
+    std::vector<std::uint32_t> balances(mesh.positions.size(), 0);
+    const auto mixed = [](std::uint32_t v) {
+        v = (v ^ (v >> 16)) * 0x7FEB352Du;
+        return (v ^ (v >> 15)) * 0x846CA68Bu;
+    };
+    for (const Triangle& t : mesh.triangles)
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::uint32_t h = mixed(t[k] + 1);
+            balances[t[(k + 2) % 3]] += h;
+            balances[t[(k + 1) % 3]] -= h;
+        }
+    return balances;
 }
 
 /// Edges of one triangle, by their ends; and how near to each end others may be.
@@ -38,12 +56,12 @@ Borders find_borders(const PointMesh& points, double share) {
         std::uint32_t low, high;
         auto operator<=>(const Side&) const = default;
     };
+    const std::vector<std::uint32_t> balances = edge_balances(points.mesh);
     std::vector<Side> sides;
-    sides.reserve(3 * points.mesh.triangles.size());
     for (const Triangle& t : points.mesh.triangles)
         for (std::size_t k = 0; k < 3; ++k) {
             const auto [low, high] = std::minmax(t[k], t[(k + 1) % 3]);
-            sides.push_back({low, high});
+            if (balances[low] != 0 && balances[high] != 0) sides.push_back({low, high});
         }
     std::sort(sides.begin(), sides.end());
     Borders out;
@@ -81,7 +99,7 @@ Borders find_borders(const PointMesh& points, double share) {
     }
     for (std::uint32_t p = 0; p < places.size(); ++p) {
         if (std::isinf(shortest[p])) continue;
-        // What must not move is no place to meet.
+        // What must not move meets nothing.
         if (!points.mesh.weights.empty() && std::isinf(points.mesh.weights[p])) continue;
         const Box& box = box_of(p);
         out.reach[p] = std::min(share * length(box.high - box.low), kOfEdge * shortest[p]);
@@ -115,8 +133,11 @@ class Grid {
                     const std::uint32_t q = cell->second[i];
                     if (q == p || reach_[q] < reach_[p] || (reach_[q] == reach_[p] && q < p)) continue;
                     if (!points_.part_of.empty() && points_.part_of[p] != points_.part_of[q]) continue;
+                    if (!points_.mesh.weights.empty() && points_.mesh.weights[p] != points_.mesh.weights[q])
+                        continue;
                     const double d = apart(points_.mesh.positions[p], points_.mesh.positions[q]);
-                    if (d <= reach_[p]) visit(q, d);
+                    // What is at one place and yet not one point is kept apart for a reason.
+                    if (d > 0 && d <= reach_[p]) visit(q, d);
                 }
             }
         }
@@ -192,7 +213,12 @@ std::vector<Meeting> find_meetings(const PointMesh& points, const Borders& borde
 
 }  // namespace
 
-std::vector<VertexMove> stitch_borders(PointMesh& points, const Mesh& mesh, double share) {
+bool may_have_boundary(const Mesh& mesh) {
+    const std::vector<std::uint32_t> balances = edge_balances(mesh);
+    return std::any_of(balances.begin(), balances.end(), [](std::uint32_t b) { return b != 0; });
+}
+
+std::vector<Stitch> stitch_borders(PointMesh& points, double share) {
     const Borders borders = find_borders(points, share);
     if (borders.edges.empty()) return {};
     const std::vector<Meeting> meetings = find_meetings(points, borders);
@@ -233,60 +259,129 @@ std::vector<VertexMove> stitch_borders(PointMesh& points, const Mesh& mesh, doub
         members.erase(b);
     }
 
-    std::vector<VertexMove> moves;
-    std::vector<bool> seen(mesh.positions.size(), false);
+    std::vector<std::uint32_t> first(count, kNoVertex);  // a vertex of each point
+    for (std::size_t t = 0; t < points.mesh.triangles.size(); ++t)
+        for (std::size_t k = 0; k < 3; ++k) {
+            std::uint32_t& vertex = first[points.mesh.triangles[t][k]];
+            vertex = std::min(vertex, points.corners[t][k]);
+        }
+    std::vector<Stitch> stitched;
     for (std::size_t t = 0; t < points.mesh.triangles.size(); ++t)
         for (std::size_t k = 0; k < 3; ++k) {
             std::uint32_t& p = points.mesh.triangles[t][k];
-            const std::uint32_t to = met[p], wedge = points.corners[t][k];
-            if (to == p) continue;
-            if (!points.mesh.weights.empty())
-                points.mesh.weights[to] = std::max(points.mesh.weights[to], points.mesh.weights[p]);
-            p = to;
-            if (seen[wedge]) continue;
-            seen[wedge] = true;
-            moves.push_back({wedge, points.mesh.positions[to], 1});
+            if (met[p] == p) continue;
+            p = met[p];
+            stitched.push_back({points.corners[t][k], first[p]});
         }
-    std::sort(moves.begin(), moves.end(),
-              [](const VertexMove& a, const VertexMove& b) { return a.vertex < b.vertex; });
-    return moves;
+    const auto by_vertex = [](const Stitch& a, const Stitch& b) { return a.vertex < b.vertex; };
+    std::sort(stitched.begin(), stitched.end(), by_vertex);
+    stitched.erase(std::unique(stitched.begin(), stitched.end(),
+                               [](const Stitch& a, const Stitch& b) { return a.vertex == b.vertex; }),
+                   stitched.end());
+    return stitched;
 }
 
-void unstitch(ProgressiveMesh& mesh, const Mesh& input, std::span<const VertexMove> stitched,
-              std::span<const std::uint32_t> births) {
+namespace {
+
+/// Corners of the progressive mesh that are stitched vertices', by vertex and corner.
+std::vector<CornerChange> stitched_corners(const ProgressiveMesh& mesh, const Mesh& input,
+                                           std::span<const Stitch> stitched,
+                                           std::span<const std::uint32_t> births) {
+    std::vector<std::uint32_t> other(input.positions.size());
+    std::vector<bool> touched(mesh.positions.size(), false);
+    for (std::uint32_t v = 0; v < other.size(); ++v) other[v] = v;
+    for (const Stitch& s : stitched) {
+        other[s.vertex] = s.other;
+        touched[births[s.other]] = true;
+    }
+    // Triangles are told by their corners, as they run.
+    struct Known {
+        Triangle corners;
+        std::size_t triangle;
+        auto operator<=>(const Known&) const = default;
+    };
+    const auto turned = [](Triangle t) {
+        std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
+        return t;
+    };
+    const auto is_touched = [&](const Triangle& t) {
+        return std::any_of(t.begin(), t.end(), [&](std::uint32_t v) { return touched[v]; });
+    };
+    std::vector<Known> theirs, ours;
+    for (std::size_t t = 0; t < input.triangles.size(); ++t) {
+        const Triangle& c = input.triangles[t];
+        const Triangle now{births[other[c[0]]], births[other[c[1]]], births[other[c[2]]]};
+        if (is_touched(now)) theirs.push_back({turned(now), t});
+    }
+    const Mesh full = Unsplitter::full(mesh);
+    for (std::size_t t = 0; t < full.triangles.size(); ++t)
+        if (is_touched(full.triangles[t])) ours.push_back({turned(full.triangles[t]), t});
+    std::sort(theirs.begin(), theirs.end());
+    std::sort(ours.begin(), ours.end());
+    std::vector<CornerChange> found;
+    for (std::size_t i = 0; i < std::min(theirs.size(), ours.size()); ++i)
+        for (const std::uint32_t v : input.triangles[theirs[i].triangle]) {
+            if (other[v] == v) continue;
+            const Triangle& c = full.triangles[ours[i].triangle];
+            const auto k = std::find(c.begin(), c.end(), births[other[v]]) - c.begin();
+            if (k < 3) found.push_back({std::uint32_t(3 * ours[i].triangle + std::size_t(k)), v});
+        }
+    std::sort(found.begin(), found.end(), [](const CornerChange& a, const CornerChange& b) {
+        return a.vertex != b.vertex ? a.vertex < b.vertex : a.corner < b.corner;
+    });
+    return found;
+}
+
+}  // namespace
+
+void unstitch(ProgressiveMesh& mesh, const Mesh& input, std::span<const Stitch> stitched,
+              std::span<const std::uint32_t> births, bool are_wedges) {
     if (stitched.empty()) return;
     struct Back {
         float distance;  ///< Not less than it is.
-        std::uint32_t vertex;
+        Stitch stitch;
     };
     std::vector<Back> back;
-    for (const VertexMove& move : stitched) {
-        const double d = apart(move.position, input.positions[move.vertex]);
-        back.push_back({std::nextafter(float(d), std::numeric_limits<float>::infinity()), move.vertex});
+    for (const Stitch& s : stitched) {
+        const double d = apart(input.positions[s.vertex], input.positions[s.other]);
+        back.push_back({std::nextafter(float(d), std::numeric_limits<float>::infinity()), s});
     }
     std::sort(back.begin(), back.end(), [](const Back& a, const Back& b) {
-        return a.distance != b.distance ? a.distance > b.distance : a.vertex < b.vertex;
+        return a.distance != b.distance ? a.distance > b.distance : a.stitch.vertex < b.stitch.vertex;
     });
+    const std::vector<CornerChange> corners =
+        are_wedges ? std::vector<CornerChange>() : stitched_corners(mesh, input, stitched, births);
     for (Split& split : mesh.splits) split.error += back.front().distance;
-    for (std::size_t i = 0; i < back.size(); ++i) {
-        const std::uint32_t v = back[i].vertex;
-        if (i % kMovesOfSplit == 0) {
-            Split split;
-            split.vertices_end = std::uint32_t(mesh.positions.size());
-            split.triangles_end = std::uint32_t(mesh.triangles.size());
-            split.corners_end = std::uint32_t(mesh.corner_changes.size());
-            split.error = back[i].distance;
-            mesh.splits.push_back(split);
+    for (std::size_t begin = 0; begin < back.size(); begin += kOfSplit) {
+        const auto some = std::span(back).subspan(begin, std::min(kOfSplit, back.size() - begin));
+        const std::size_t first_corner = mesh.corner_changes.size();
+        for (const auto& [distance, stitch] : some) {
+            const std::uint32_t v = stitch.vertex;
+            const float weight = input.weights.empty() ? 1.0f : input.weights[v];
+            if (are_wedges) {
+                mesh.moves.push_back({births[v], input.positions[v], weight});
+                for (std::size_t k = 0; k < mesh.attributes.size(); ++k) {
+                    const Attribute& from = input.attributes[k];
+                    const auto value = from.values.begin() + std::ptrdiff_t(std::size_t{v} * from.components);
+                    mesh.moved_values[k].insert(mesh.moved_values[k].end(), value,
+                                                value + std::ptrdiff_t(from.components));
+                }
+                continue;
+            }
+            for (auto c = std::lower_bound(
+                     corners.begin(), corners.end(), v,
+                     [](const CornerChange&change, std::uint32_t vertex) { return change.vertex < vertex; });
+                 c != corners.end() && c->vertex == v; ++c)
+                mesh.corner_changes.push_back({c->corner, std::uint32_t(mesh.positions.size())});
+            mesh.positions.push_back(input.positions[v]);
+            mesh.parents.push_back(births[stitch.other]);
+            if (!mesh.weights.empty()) mesh.weights.push_back(weight);
         }
-        mesh.moves.push_back(
-            {births[v], input.positions[v], input.weights.empty() ? 1.0f : input.weights[v]});
-        for (std::size_t k = 0; k < mesh.attributes.size(); ++k) {
-            const Attribute& from = input.attributes[k];
-            const auto begin = from.values.begin() + std::ptrdiff_t(std::size_t{v} * from.components);
-            mesh.moved_values[k].insert(mesh.moved_values[k].end(), begin,
-                                        begin + std::ptrdiff_t(from.components));
-        }
-        mesh.splits.back().moves_end = std::uint32_t(mesh.moves.size());
+        std::sort(mesh.corner_changes.begin() + std::ptrdiff_t(first_corner), mesh.corner_changes.end(),
+                  [](const CornerChange& a, const CornerChange& b) { return a.corner < b.corner; });
+        mesh.splits.push_back({std::uint32_t(mesh.positions.size()), std::uint32_t(mesh.triangles.size()),
+                               std::uint32_t(mesh.corner_changes.size()), std::uint32_t(mesh.moves.size()),
+                               some.front().distance});
     }
 }
 

@@ -15,15 +15,25 @@
 
 namespace vsplit::bake {
 
-/// Makes one point of the ends of boundary edges that lie on each other: both ends at most
-/// `share` times the diagonal of their part apart, and little against the boundary edges there. Never of the
-/// corners of one triangle. `points` is that of `mesh`; a point that becomes another is left without
-/// triangles. Returns the vertices of `mesh` that are now somewhere else, with their new places; ascending.
-std::vector<VertexMove> stitch_borders(PointMesh& points, const Mesh& mesh, double share);
+/// A vertex of the input that has become another, at that one's place.
+struct Stitch {
+    std::uint32_t vertex, other;
+};
 
-/// Appends splits that put the vertices of `stitched` where `input` has them, farthest first, and adds their
-/// distance to the errors before. `births`: of each vertex of the input, its number in `mesh`.
-void unstitch(ProgressiveMesh& mesh, const Mesh& input, std::span<const VertexMove> stitched,
-              std::span<const std::uint32_t> births);
+/// False if stitch_borders() surely finds nothing; much faster.
+bool may_have_boundary(const Mesh& mesh);
+
+/// Makes one point of the ends of boundary edges that lie on each other: both ends at most `share` times the
+/// diagonal of their part apart, and little against the boundary edges there. Never of the corners of one
+/// triangle, nor of points with different weights. A point that becomes another is left without triangles.
+/// `points` is that of a mesh whose vertices are the corners; returns those that are now somewhere else,
+/// ascending.
+std::vector<Stitch> stitch_borders(PointMesh& points, double share);
+
+/// Appends splits that put the stitched vertices where `input` has them, farthest first, and adds their
+/// distance to the errors before. `births`: of each vertex of the input, its number in `mesh`. `are_wedges`:
+/// they are there already, beside the others; else each is born of the other and takes its corners back.
+void unstitch(ProgressiveMesh& mesh, const Mesh& input, std::span<const Stitch> stitched,
+              std::span<const std::uint32_t> births, bool are_wedges);
 
 }  // namespace vsplit::bake
