@@ -658,10 +658,16 @@ def from_octahedron(u, v, bits):
     return [f32(x / length), f32(y / length), f32(z / length)]
 
 
+def finite(x):
+    if not math.isfinite(x):
+        raise Bad('a place or value is not finite')
+    return x
+
+
 def restore(attribute, numbers):
     _, _, components, coding, bits, grid = attribute
     if coding == 0:
-        return [ordered_float(n) for n in numbers]
+        return [finite(ordered_float(n)) for n in numbers]
     if coding == 1:
         return [f32(grid[c][0] + grid[c][1] * numbers[c]) for c in range(components)]
     if coding == 2:
@@ -1016,7 +1022,7 @@ class Decoder:
         for a in range(3):
             x = f32(self.file.origin[a] + self.file.step * place[a])
             if self.file.lossless:
-                x = ordered_float(signed((ordered_number(x) + unzigzag(finer[a])) & M32))
+                x = finite(ordered_float(signed((ordered_number(x) + unzigzag(finer[a])) & M32)))
             out.append(x)
         return out
 
@@ -1025,7 +1031,10 @@ class Decoder:
             count = numbers_of(attribute)
             to[i].extend(restore(attribute, values[:count]))
             values = values[count:]
-        return ordered_float(values[0]) if self.file.weighted else 1.0
+        weight = ordered_float(values[0]) if self.file.weighted else 1.0
+        if not weight >= 0:
+            raise Bad('a weight is negative or not a number')
+        return weight
 
     def add_vertex(self, place, finer, values, parent):
         self.positions.append(self.position(place, finer))
