@@ -715,6 +715,7 @@ class Decoder:
         self.last_place, self.last_group = [0, 0, 0], 0
 
         # The progressive mesh.
+        self.behind, self.end = [], 0       # the order of vertices in batches
         self.positions, self.weights, self.parents, self.born_triangles = [], [], [], []
         self.splits, self.corner_changes, self.moves = [], [], []
         self.attribute_values = [[] for _ in file.attributes]
@@ -758,6 +759,9 @@ class Decoder:
                 self.older = alive
                 self.cursor, self.round, self.asked = 0, 0, set(range(alive))
                 self.sparse = self.marked_left * 64 < alive
+                self.order = [0] if alive else []
+                while len(self.order) < alive:
+                    self.order.append(self.behind[self.order[-1]])
             primary = NONE
             if self.marked_left:
                 self.marked_left -= 1
@@ -774,7 +778,8 @@ class Decoder:
             return self.cursor
         if self.kind:
             while self.cursor < self.older:
-                v, star = self.cursor, self.live.star[self.cursor]
+                v = self.order[self.cursor]
+                star = self.live.star[v]
                 locked = sum(self.is_locked(c // 3) for c in star)
                 if self.kind == 2 or locked < len(star):
                     size, bumpy = self.bumpy(v)
@@ -1037,6 +1042,12 @@ class Decoder:
         return weight
 
     def add_vertex(self, place, finer, values, parent):
+        number, before = len(self.positions), self.end if parent == NONE else parent
+        if before == self.end:
+            self.end = number
+        self.behind.append(self.behind[before] if number else NONE)
+        if number:
+            self.behind[before] = number
         self.positions.append(self.position(place, finer))
         self.parents.append(parent)
         weight = self.floats(values, self.attribute_values)
