@@ -253,17 +253,17 @@ DIGIT_PRIOR = [40, 40, 40, 40, 40, 40, 40, 40, 40, 60, 80, 120, 170, 240, 340, 4
 
 
 class Residual:
-    def __init__(self, scales, kinds):
-        self.scales, self.kinds = scales, kinds
-        self.second = [[Bit() for _ in range(4)] for _ in range(64)]
+    def __init__(self, rows, kinds):
+        self.rows, self.kinds = rows, kinds
+        self.second = [[Bit() for _ in range(3)] for _ in range(64)]
         self.sign = [Bit() for _ in range(64)]
         self.digits = []
-        for scale in range(scales):
+        for row in range(rows):
             weight = [0] * 64
             for d in range(32):
-                at = min(max(2 * d - scale + 24, 0), 48)
+                at = min(max(2 * d - row + 24, 0), 48)
                 weight[32 + d] = 1 if d > 26 else DIGIT_PRIOR[at]
-            weight[32] += 40 * max(scale - 24, 0)
+            weight[32] += sum(DIGIT_PRIOR[at] for at in range(22 - row, -1, -2))
             for node in range(31, 0, -1):
                 weight[node] = weight[2 * node] + weight[2 * node + 1]
             for _ in range(kinds):
@@ -274,24 +274,26 @@ class Residual:
                 self.digits.append(model)
 
     def decode(self, coder, scale, kind, side=None):
-        scale = min(scale, self.scales - 1)
-        count = self.digits[scale * self.kinds + kind].decode(coder)
-        if count == 0:
-            return 0
-        second = self.second[min(max(2 * count - scale + 24, 0), 63)]
-        read = 1
+        scale = min(scale, 55)
+        aside = 0 if scale < self.rows else (scale + 2 - self.rows) // 2
+        row = scale - 2 * aside
+        count = min(self.digits[row * self.kinds + kind].decode(coder), 31 - aside)
+        second = self.second[min(max(2 * count - row + 24, 0), 63)]
+        read = min(count, 1)
         if count > 1:
             read = 2 * read + coder.bit(second[0])
         if count > 2:
             read = 2 * read + coder.bit(second[read - 1])
-        rest = max(count - 3, 0)
-        if side is None:
+        rest = max(count - 3, 0) + aside
+        if count > 0 and side is None:
             raw = coder.raw(rest + 1)
-        else:
-            raw = coder.raw(rest) << 1
-            raw |= coder.bit(self.sign[side])
-        read = read << rest | raw >> 1
-        return -read if raw & 1 else read
+            read = read << rest | raw >> 1
+            return -read if raw & 1 else read
+        read = read << rest | coder.raw(rest)
+        if read == 0:
+            return 0
+        negative = coder.raw(1) if side is None else coder.bit(self.sign[side])
+        return -read if negative else read
 
 
 # ---- Header, details, table
@@ -554,9 +556,9 @@ def rough_shift(scale, bent):
 class Places:
     def __init__(self, weights):
         self.weights = weights
-        self.first = [Residual(56, 6) for _ in range(3)]
-        self.second = [Residual(56, 6) for _ in range(3)]
-        self.third = [Residual(56, 4) for _ in range(3)]
+        self.first = [Residual(15, 6) for _ in range(3)]
+        self.second = [Residual(15, 6) for _ in range(3)]
+        self.third = [Residual(15, 4) for _ in range(3)]
         self.free = Residual(1, 1)
 
     def decode(self, coder, live, kind, parent, ring, open_ring, rough, child=None):
@@ -658,10 +660,16 @@ def from_octahedron(u, v, bits):
     return [f32(x / length), f32(y / length), f32(z / length)]
 
 
+def finite(x):
+    if not math.isfinite(x):
+        raise Bad('a place or value is not finite')
+    return x
+
+
 def restore(attribute, numbers):
     _, _, components, coding, bits, grid = attribute
     if coding == 0:
-        return [ordered_float(n) for n in numbers]
+        return [finite(ordered_float(n)) for n in numbers]
     if coding == 1:
         return [f32(grid[c][0] + grid[c][1] * numbers[c]) for c in range(components)]
     if coding == 2:
@@ -709,6 +717,7 @@ class Decoder:
         self.last_place, self.last_group = [0, 0, 0], 0
 
         # The progressive mesh.
+        self.behind, self.end = [], 0       # the order of vertices in batches
         self.positions, self.weights, self.parents, self.born_triangles = [], [], [], []
         self.splits, self.corner_changes, self.moves = [], [], []
         self.attribute_values = [[] for _ in file.attributes]
@@ -752,6 +761,9 @@ class Decoder:
                 self.older = alive
                 self.cursor, self.round, self.asked = 0, 0, set(range(alive))
                 self.sparse = self.marked_left * 64 < alive
+                self.order = [0] if alive else []
+                while len(self.order) < alive:
+                    self.order.append(self.behind[self.order[-1]])
             primary = NONE
             if self.marked_left:
                 self.marked_left -= 1
@@ -768,7 +780,8 @@ class Decoder:
             return self.cursor
         if self.kind:
             while self.cursor < self.older:
-                v, star = self.cursor, self.live.star[self.cursor]
+                v = self.order[self.cursor]
+                star = self.live.star[v]
                 locked = sum(self.is_locked(c // 3) for c in star)
                 if self.kind == 2 or locked < len(star):
                     size, bumpy = self.bumpy(v)
@@ -1016,7 +1029,7 @@ class Decoder:
         for a in range(3):
             x = f32(self.file.origin[a] + self.file.step * place[a])
             if self.file.lossless:
-                x = ordered_float(signed((ordered_number(x) + unzigzag(finer[a])) & M32))
+                x = finite(ordered_float(signed((ordered_number(x) + unzigzag(finer[a])) & M32)))
             out.append(x)
         return out
 
@@ -1025,9 +1038,18 @@ class Decoder:
             count = numbers_of(attribute)
             to[i].extend(restore(attribute, values[:count]))
             values = values[count:]
-        return ordered_float(values[0]) if self.file.weighted else 1.0
+        weight = ordered_float(values[0]) if self.file.weighted else 1.0
+        if not weight >= 0:
+            raise Bad('a weight is negative or not a number')
+        return weight
 
     def add_vertex(self, place, finer, values, parent):
+        number, before = len(self.positions), self.end if parent == NONE else parent
+        if before == self.end:
+            self.end = number
+        self.behind.append(self.behind[before] if number else NONE)
+        if number:
+            self.behind[before] = number
         self.positions.append(self.position(place, finer))
         self.parents.append(parent)
         weight = self.floats(values, self.attribute_values)

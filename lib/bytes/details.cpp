@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "details.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 
@@ -151,19 +152,27 @@ void MeshOutput::reserve(std::size_t vertices, std::size_t triangles, std::size_
     }
 }
 
-Float3 MeshOutput::place(const Lattice3& at, const std::array<std::uint32_t, 3>& finer) const {
-    return lossless_ ? lattice_.exact(at, finer) : lattice_.point(at);
+Float3 MeshOutput::place(const Lattice3& at, const std::array<std::uint32_t, 3>& finer) {
+    if (!lossless_) return lattice_.point(at);
+    const Float3 p = lattice_.exact(at, finer);
+    sound_ &= std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+    return p;
 }
 
 void MeshOutput::add_values(const std::int32_t* numbers, bool birth) {
     for (std::size_t i = 0; i < rules_.size(); ++i) {
         auto& to = birth ? mesh_->attributes[i].values : mesh_->moved_values[i];
         to.resize(to.size() + rules_[i].components);
-        rules_[i].restore(numbers, to.data() + to.size() - rules_[i].components);
+        float* const values = to.data() + to.size() - rules_[i].components;
+        rules_[i].restore(numbers, values);
+        if (rules_[i].coding == ValueCoding::kFloat)
+            sound_ &= std::all_of(values, values + rules_[i].components,
+                                  [](float value) { return std::isfinite(value); });
         numbers += rules_[i].numbers();
     }
     if (weights_) {
         const float weight = ordered_float(*numbers);
+        sound_ &= weight >= 0;
         if (birth)
             mesh_->weights.push_back(weight);
         else

@@ -38,16 +38,19 @@ class MeshOutput {
     /// The base mesh, from the codec's state.
     void add_base(const SplitCodec& codec);
     void add(const SplitPlan& plan, float error);
+    /// Whether all places, weights and values so far are finite, and no weight negative: floats that are
+    /// stored as they are may be anything.
+    bool sound() const { return sound_; }
 
   private:
     void add_values(const std::int32_t* numbers, bool birth);
-    Float3 place(const Lattice3& at, const std::array<std::uint32_t, 3>& finer) const;
+    Float3 place(const Lattice3& at, const std::array<std::uint32_t, 3>& finer);
 
     ProgressiveMesh* mesh_;
     Lattice lattice_;
     std::vector<ValueRule> rules_;
     std::size_t stride_ = 0;
-    bool weights_, lossless_, groups_;
+    bool weights_, lossless_, groups_, sound_ = true;
 };
 
 }  // namespace vsplit

@@ -98,6 +98,7 @@ class LiveStars {
     /// How far a vertex is from the mean of its neighbours, in 1/16; zeros where the star is empty or vast.
     Lattice3 bump(std::uint32_t vertex) const;
 
+    void fetch(std::uint32_t vertex) const { __builtin_prefetch(&vertices[vertex]); }
     /// Has the memory read ahead that asking for a split of this vertex needs: 0 its list, 1 its ring.
     void fetch(std::uint32_t vertex, int stage) const {
         const LiveVertex& v = vertices[vertex];

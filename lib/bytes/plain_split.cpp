@@ -140,6 +140,7 @@ void SplitCodec::apply_plain(const SplitPlan& plan) {
                     values.begin() + static_cast<std::ptrdiff_t>(p * stride));
     }
     live.split(star_, run_, parent_at, birth.at);
+    order_.add(p);
     values.insert(values.end(), plan.birth_values.begin(), plan.birth_values.end());
     if (shape_.lossless) finer.push_back(birth.finer);
     if (shape_.group_bits > 0) groups.insert(groups.end(), plan.groups.begin(), plan.groups.end());

@@ -24,6 +24,8 @@ bool only_zeros(std::span<const std::byte> bytes) {
 
 }  // namespace
 
+constexpr const char* kUnsoundValue = "a place or value is not finite, or a weight is negative";
+
 struct BlockDecoder::State {
     FileInfo info;
     ProgressiveMesh mesh;
@@ -67,7 +69,7 @@ const char* BlockDecoder::State::begin_base(BaseMesh base, std::span<const std::
     if (coder.overrun()) return "the base mesh's stream ends too early";
     if (!only_zeros(extras.subspan(coder.taken()))) return "the base mesh's stream is longer than it needs";
     output.add_base(codec);
-    return nullptr;
+    return output.sound() ? nullptr : kUnsoundValue;
 }
 
 const char* BlockDecoder::State::decode_splits(std::span<const std::byte> stored, const BlockInfo& block) {
@@ -94,6 +96,7 @@ const char* BlockDecoder::State::decode_splits(std::span<const std::byte> stored
         codec.apply(plan);
         output.add(plan, error);
     }
+    if (!output.sound()) return kUnsoundValue;
     if (!only_zeros(stored.subspan(std::min(coder.taken(), stored.size()))))
         return "it is longer than its splits need";
     if (mesh.positions.size() != block.vertices_end || mesh.triangles.size() != block.triangles_end ||

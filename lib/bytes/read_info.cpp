@@ -24,7 +24,7 @@ std::uint64_t memory_needed(const FileInfo& info, const Details& details) {
     }
     const std::uint64_t exact = info.lossless ? sizeof(std::array<std::uint32_t, 3>) : 0;
     const std::uint64_t vertex = sizeof(Float3) + sizeof(std::uint32_t) + 4 * floats;
-    const std::uint64_t live_vertex = sizeof(LiveVertex) + 4 * numbers + exact;
+    const std::uint64_t live_vertex = sizeof(LiveVertex) + 2 * sizeof(std::uint32_t) + 4 * numbers + exact;
     const std::uint64_t groups = info.largest_group > 0 ? 8 : 0;
     // Lists of slots have room for eight, and double as stars grow.
     const std::uint64_t lists = 8 * (8 * std::uint64_t{info.vertices} + 12 * std::uint64_t{info.triangles} +

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "ask_list.hpp"
+#include "sweep_order.hpp"
 
 namespace vsplit {
 namespace {
@@ -167,6 +168,8 @@ class Batches {
           moved_(mesh.positions.size(), {0, 0}) {
         for (std::uint32_t v = 0; v < mesh.base_vertices; ++v) number_[v] = v;
         alive_ = mesh.base_vertices;
+        order_.reserve(mesh.positions.size());
+        for (std::uint32_t v = 0; v < mesh.base_vertices; ++v) order_.add(kNoVertex);
     }
 
     /// Each as long as it can be; none if that makes too many of them.
@@ -182,9 +185,7 @@ class Batches {
             ++sweep_;
             for (end = first; end < count && take(end, sweep); ++end) {
             }
-            std::sort(sweep.steps.begin(), sweep.steps.end(), [](const Sweep::Step& a, const Sweep::Step& b) {
-                return a.primary != b.primary ? a.primary < b.primary : a.split < b.split;
-            });
+            sort(sweep);
             for (const Sweep::Step& step : sweep.steps) bear(step.split);
         }
         return out;
@@ -233,6 +234,23 @@ class Batches {
         sweep.steps.push_back({s, primary});
         return true;
     }
+    /// As a decoder comes to them: by numbers where few are marked, else as all are asked.
+    void sort(Sweep& sweep) {
+        const auto marked = std::count_if(sweep.steps.begin(), sweep.steps.end(),
+                                          [](const Sweep::Step& step) { return step.primary != kNoVertex; });
+        const bool by_number = is_sparse(static_cast<std::uint32_t>(marked), alive_);
+        if (!by_number) {
+            order_.list(asked_);
+            place_.resize(asked_.size());
+            for (std::uint32_t i = 0; i < asked_.size(); ++i) place_[asked_[i]] = i;
+        }
+        const auto key = [&](const Sweep::Step& step) {
+            return by_number || step.primary == kNoVertex ? step.primary : place_[step.primary];
+        };
+        std::sort(sweep.steps.begin(), sweep.steps.end(), [&](const Sweep::Step& a, const Sweep::Step& b) {
+            return a.primary != b.primary ? key(a) < key(b) : a.split < b.split;
+        });
+    }
     /// Numbers what a split bears.
     void bear(std::uint32_t s) {
         const Split from = begin_of(s), to = mesh_.splits[s];
@@ -244,14 +262,17 @@ class Batches {
         for (const auto& [parent, v] : births_) {
             if (traded_[v]) number_[mesh_.parents[v]] = alive_;
             number_[v] = traded_[v] ? parent : alive_;
+            order_.add(parent);
             ++alive_;
         }
     }
 
     const ProgressiveMesh& mesh_;
     const std::vector<bool>& traded_;
-    std::vector<std::uint32_t> number_;   // as written
-    std::vector<std::uint32_t> changed_;  // per triangle, the sweep
+    SweepOrder order_;
+    std::vector<std::uint32_t> asked_, place_;  // all vertices in it, and where each is
+    std::vector<std::uint32_t> number_;         // as written
+    std::vector<std::uint32_t> changed_;        // per triangle, the sweep
     struct Moved {
         std::uint32_t sweep, primary;
     };

@@ -21,13 +21,18 @@ enum class SweepKind : std::uint8_t {
     kBatchAll,  ///< The same, but all are asked.
 };
 
+/// So few vertices of those alive are marked that it tells them by their numbers.
+inline bool is_sparse(std::uint32_t marked, std::uint32_t alive) {
+    return std::uint64_t{marked} * 64 < alive;
+}
+
 struct Sweep {
     struct Step {
         std::uint32_t split;    ///< In the record.
         std::uint32_t primary;  ///< The written number of its first parent; kNoVertex if it has none.
     };
     std::vector<Step>
-        steps;  ///< Those with parents, in the order in which an AskList comes to these; then those without.
+        steps;  ///< Those with parents, in the order in which they are asked; then those without.
     SweepKind kind = SweepKind::kRounds;
     float error = 0;  ///< Of the mesh before the sweep: of the first split not made yet.
 };

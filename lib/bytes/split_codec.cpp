@@ -46,7 +46,8 @@ const char* SplitCodec::code_head(Coder& coder, SweepHead& head) {
     cursor_ = 0;
     older_ = alive;
     if (!is_batch()) asks_.begin(alive);
-    sparse_ = std::uint64_t{head.marked} * 64 < alive;
+    sparse_ = is_sparse(head.marked, alive);
+    if ((Coder::kWrites || Coder::kDecodes) && is_batch() && !sparse_) order_.list(asked_);
     return nullptr;
 }
 
@@ -97,11 +98,13 @@ const char* SplitCodec::code_mark(Coder& coder, std::uint32_t& primary) {
     }
     if (is_batch()) {
         for (; cursor_ < older_; ++cursor_) {
-            if (kind_ == SweepKind::kBatch && unlocked(live.vertices[cursor_]) == 0) continue;
-            if (cursor_ + 8 < older_) live.fetch(cursor_ + 8, 0);
-            if (cursor_ + 4 < older_) live.fetch(cursor_ + 4, 1);
-            if (!ask_batch(coder, cursor_, cursor_ == primary)) continue;
-            primary = cursor_;
+            const std::uint32_t v = asked_[cursor_];
+            if (kind_ == SweepKind::kBatch && unlocked(live.vertices[v]) == 0) continue;
+            if (cursor_ + 12 < older_) live.fetch(asked_[cursor_ + 12]);
+            if (cursor_ + 8 < older_) live.fetch(asked_[cursor_ + 8], 0);
+            if (cursor_ + 4 < older_) live.fetch(asked_[cursor_ + 4], 1);
+            if (!ask_batch(coder, v, v == primary)) continue;
+            primary = v;
             return nullptr;
         }
         return "a sweep marks fewer vertices than it announces";

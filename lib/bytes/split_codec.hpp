@@ -17,6 +17,7 @@
 #include "number_models.hpp"
 #include "place_model.hpp"
 #include "schedule.hpp"
+#include "sweep_order.hpp"
 
 namespace vsplit {
 
@@ -202,6 +203,8 @@ class SplitCodec {
 
     // Sweeps.
     AskList asks_;
+    SweepOrder order_;                  ///< Of all vertices,
+    std::vector<std::uint32_t> asked_;  ///< and of those that a batch asks.
     SweepKind kind_ = SweepKind::kRounds;
     SymbolModel<2> kinds_;
     std::uint32_t sweep_ = 0, cursor_ = 0;

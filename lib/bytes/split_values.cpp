@@ -337,6 +337,7 @@ void SplitCodec::code_base(Coder& coder) {
         code_values(coder, values.data() + v * stride, row);
         std::copy(row.begin(), row.end(), values.begin() + static_cast<std::ptrdiff_t>(v * stride));
     }
+    for (std::uint32_t v = 0; v < count; ++v) order_.add(kNoVertex);
     if (shape_.group_bits > 0) {
         SplitPlan plan;
         for (std::uint32_t& group : groups) {
@@ -394,6 +395,7 @@ void SplitCodec::apply(const SplitPlan& plan) {
     values.insert(values.end(), plan.birth_values.begin(), plan.birth_values.end());
     for (const SplitPlan::Birth& birth : plan.births) {
         live.add_vertex(birth.at);
+        order_.add(birth.parent);
         if (shape_.lossless) finer.push_back(birth.finer);
     }
     const auto touch_ring = [&](std::uint32_t v) {

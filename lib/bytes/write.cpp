@@ -90,6 +90,7 @@ Result<Encoded> encode(const ProgressiveMesh& mesh, const WriteOptions& options)
         RecordEncoder first(mesh, numbers, sweeps);
         first.codec().fit = &fit;
         first.codec().fit_every = static_cast<std::uint32_t>(mesh.splits.size() / kFitted + 1);
+        first.code_base(look);
         first.code_splits(look, [](const SplitPlan&, float, bool) {});
     }
     numbers.details.weights = fit.solve();

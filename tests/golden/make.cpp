@@ -72,6 +72,17 @@ int main(int argc, char** argv) {
                      checksum64(std::span(b).subspan(block.offset, block.bytes)));
         test::reseal(b);
     });
+    {
+        // A lattice beyond the floats, from which some places are one step more: infinite.
+        WriteOptions lossless;
+        lossless.position_bits = 0;
+        auto written = write_progressive_mesh(test::naive_record(test::make_torus(9, 6), 77), lossless);
+        if (!written) return 1;
+        Bytes far = *std::move(written);
+        for (std::size_t axis = 0; axis < 3; ++axis) test::put_at(far, test::kLatticeAt + 8 * axis, 1e39);
+        test::reseal(far);
+        good &= save(folder + "/malformed/malformed-not-finite.pmesh", far);
+    }
     spoil("unsupported-version", [](Bytes& b) { test::put_at(b, 8, 2u); });
     spoil("unsupported-flag", [](Bytes& b) {
         test::put_at(b, 12, 0x80u);

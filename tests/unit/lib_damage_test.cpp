@@ -45,6 +45,15 @@ void require_safe(const Bytes& bytes) {
     if (whole && progressive_mesh_fault(*whole)) FAIL("an unsound mesh was read");
     const auto prefix = read_prefix(bytes, kLimits);
     if (prefix && progressive_mesh_fault(*prefix)) FAIL("an unsound prefix was read");
+    auto decoder = BlockDecoder::begin(bytes, kLimits);
+    if (!decoder) return;
+    if (const char* fault = progressive_mesh_fault(decoder->mesh())) FAIL("an unsound base: " << fault);
+    for (const BlockInfo& block : decoder->info().blocks) {
+        if (block.offset + block.bytes > bytes.size()) return;
+        if (!decoder->decode(std::span(bytes).subspan(block.offset, block.bytes))) return;
+        if (const char* fault = progressive_mesh_fault(decoder->mesh()))
+            FAIL("unsound after a block: " << fault);
+    }
 }
 
 /// Checksums of base and blocks as the bytes are now, then those of the front.
@@ -118,4 +127,29 @@ TEST_CASE("Flipped bits under checksums that fit are an error or a sound mesh") 
             require_safe(bytes);
         }
     }
+}
+
+TEST_CASE("Values that are no numbers are refused as they arrive") {
+    const ProgressiveMesh record = naive_record(make_torus(14, 9), 11);
+    WriteOptions options;
+    options.position_bits = 0;
+    options.block_bytes = 1024;
+    auto written = write_progressive_mesh(record, options);
+    REQUIRE(written.ok());
+    REQUIRE(BlockDecoder::begin(*written, kLimits).ok());
+    // From a lattice beyond the floats, some places are a step more: infinite.
+    Bytes bytes = *written;
+    for (std::size_t axis = 0; axis < 3; ++axis) put_at(bytes, kLatticeAt + 8 * axis, 1e39);
+    reseal(bytes);
+    REQUIRE_FALSE(read_progressive_mesh(bytes, kLimits).ok());
+    // The base may do without, its blocks not all.
+    auto decoder = BlockDecoder::begin(bytes, kLimits);
+    bool refused = !decoder;
+    if (decoder)
+        for (const BlockInfo& block : decoder->info().blocks)
+            if (!decoder->decode(std::span(bytes).subspan(block.offset, block.bytes))) {
+                refused = true;
+                break;
+            }
+    REQUIRE(refused);
 }

@@ -306,6 +306,24 @@ TEST_CASE("priority: the file's painted weights are those at birth, whatever is 
     }
 }
 
+TEST_CASE("priority: weights of a mesh that has none are all alike") {
+    const ProgressiveMesh record = decorated(naive_record(make_torus(16, 12), 9), 4);
+    REQUIRE((record.weights.empty() && !record.moves.empty()));
+    auto mesh = ViewMesh::make(prefix(record, record.splits.size() / 2), room_of(record));
+    REQUIRE(mesh.ok());
+    settle(*mesh, everything());
+    mesh->use_weights();
+    REQUIRE(mesh->append(record).ok());
+    settle(*mesh, everything());
+    mesh->use_weights();
+    CHECK(mesh->largest_priority() == 1.0f);
+    mesh->rank();
+    for (const std::size_t rank : {record.splits.size(), record.splits.size() / 3}) {
+        REQUIRE(mesh->refine_to(rank).settled);
+        CHECK(of_view(*mesh) == of_level(record, rank));
+    }
+}
+
 TEST_CASE("priority: what is no priority is refused") {
     const ProgressiveMesh record = naive_record(make_torus(10, 8), 3);
     auto mesh = ViewMesh::make(record);
