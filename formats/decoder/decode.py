@@ -253,17 +253,17 @@ DIGIT_PRIOR = [40, 40, 40, 40, 40, 40, 40, 40, 40, 60, 80, 120, 170, 240, 340, 4
 
 
 class Residual:
-    def __init__(self, scales, kinds):
-        self.scales, self.kinds = scales, kinds
-        self.second = [[Bit() for _ in range(4)] for _ in range(64)]
+    def __init__(self, rows, kinds):
+        self.rows, self.kinds = rows, kinds
+        self.second = [[Bit() for _ in range(3)] for _ in range(64)]
         self.sign = [Bit() for _ in range(64)]
         self.digits = []
-        for scale in range(scales):
+        for row in range(rows):
             weight = [0] * 64
             for d in range(32):
-                at = min(max(2 * d - scale + 24, 0), 48)
+                at = min(max(2 * d - row + 24, 0), 48)
                 weight[32 + d] = 1 if d > 26 else DIGIT_PRIOR[at]
-            weight[32] += 40 * max(scale - 24, 0)
+            weight[32] += sum(DIGIT_PRIOR[at] for at in range(22 - row, -1, -2))
             for node in range(31, 0, -1):
                 weight[node] = weight[2 * node] + weight[2 * node + 1]
             for _ in range(kinds):
@@ -274,24 +274,26 @@ class Residual:
                 self.digits.append(model)
 
     def decode(self, coder, scale, kind, side=None):
-        scale = min(scale, self.scales - 1)
-        count = self.digits[scale * self.kinds + kind].decode(coder)
-        if count == 0:
-            return 0
-        second = self.second[min(max(2 * count - scale + 24, 0), 63)]
-        read = 1
+        scale = min(scale, 55)
+        aside = 0 if scale < self.rows else (scale + 2 - self.rows) // 2
+        row = scale - 2 * aside
+        count = min(self.digits[row * self.kinds + kind].decode(coder), 31 - aside)
+        second = self.second[min(max(2 * count - row + 24, 0), 63)]
+        read = min(count, 1)
         if count > 1:
             read = 2 * read + coder.bit(second[0])
         if count > 2:
             read = 2 * read + coder.bit(second[read - 1])
-        rest = max(count - 3, 0)
-        if side is None:
+        rest = max(count - 3, 0) + aside
+        if count > 0 and side is None:
             raw = coder.raw(rest + 1)
-        else:
-            raw = coder.raw(rest) << 1
-            raw |= coder.bit(self.sign[side])
-        read = read << rest | raw >> 1
-        return -read if raw & 1 else read
+            read = read << rest | raw >> 1
+            return -read if raw & 1 else read
+        read = read << rest | coder.raw(rest)
+        if read == 0:
+            return 0
+        negative = coder.raw(1) if side is None else coder.bit(self.sign[side])
+        return -read if negative else read
 
 
 # ---- Header, details, table
@@ -554,9 +556,9 @@ def rough_shift(scale, bent):
 class Places:
     def __init__(self, weights):
         self.weights = weights
-        self.first = [Residual(56, 6) for _ in range(3)]
-        self.second = [Residual(56, 6) for _ in range(3)]
-        self.third = [Residual(56, 4) for _ in range(3)]
+        self.first = [Residual(15, 6) for _ in range(3)]
+        self.second = [Residual(15, 6) for _ in range(3)]
+        self.third = [Residual(15, 4) for _ in range(3)]
         self.free = Residual(1, 1)
 
     def decode(self, coder, live, kind, parent, ring, open_ring, rough, child=None):

@@ -71,14 +71,16 @@ class PlaceModel {
     Lattice3 code_free(Coder& coder, const Lattice3& near, const Lattice3& place);
 
   private:
+    /// Scales whose digit counts have models of their own.
+    static constexpr std::size_t kScaleRows = 15;
     struct Around;
     static void look_around(const LiveStars& mesh, const Ring& ring, const Lattice3& from, Around& around);
     void measure(const Around& around, std::uint32_t count, PlaceGuides& guides) const;
 
     PlaceWeights weights_;
-    ResidualModel<56, 6> first_[kPlaceKinds];
-    ResidualModel<56, 6> second_[kPlaceKinds];
-    ResidualModel<56, 4> third_[kPlaceKinds];
+    ResidualModel<kScaleRows, 6> first_[kPlaceKinds];
+    ResidualModel<kScaleRows, 6> second_[kPlaceKinds];
+    ResidualModel<kScaleRows, 4> third_[kPlaceKinds];
     ResidualModel<1> free_;
 };
 

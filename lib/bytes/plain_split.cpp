@@ -89,7 +89,7 @@ void SplitCodec::take_run(std::uint32_t child, SplitPlan& out) {
     child_ring_.open = !(run_.first_wing && run_.last_wing);
 }
 
-const Ring& SplitCodec::parent_ring() {
+void SplitCodec::find_parent_ring() {
     const std::uint32_t n = star_.size, begin = run_.begin, end = begin + run_.length;
     parent_ring_.open = !star_.closed;
     const std::uint32_t* const ring = star_.ring.data();
@@ -101,7 +101,6 @@ const Ring& SplitCodec::parent_ring() {
         if (run_.first_wing) to = std::copy(ring, ring + begin + 1, to);
     }
     parent_ring_.size = static_cast<std::uint32_t>(to - parent_ring_.vertex.data());
-    return parent_ring_;
 }
 
 bool SplitCodec::find_plain(std::uint32_t primary, const SplitPlan& wanted, Cut& cut,

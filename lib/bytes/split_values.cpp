@@ -87,10 +87,10 @@ void SplitCodec::code_move(Coder& coder, const SplitPlan& wanted, std::size_t wh
         if (guided && !looks_at<Coder>()) {
             move.at = asked.at;
         } else if (guided) {
-            const Ring& ring = parent_ring();
-            PlaceGuides guides = place_.guide_move(live, vertex, ring, out.births.back().at);
+            find_parent_ring();
+            PlaceGuides guides = place_.guide_move(live, vertex, parent_ring_, out.births.back().at);
             bool rough = !Coder::kDecodes && asked.tolerance > 0 &&
-                         may_be_rough(guides, asked.at, asked.tolerance, ring, out.births.back().at);
+                         may_be_rough(guides, asked.at, asked.tolerance, parent_ring_, out.births.back().at);
             if (!shape_.lossless) rough = coder.bit(rough_[1], rough);
             move.at = place_.code(coder, guides, asked.at, rough);
             if (!Coder::kDecodes && fit) fit->add(guides, move.at);
