@@ -157,8 +157,9 @@ class Scenes(SceneTest):
                 names = {name for mesh in glb_json(self.path(scene))['meshes'] for p in mesh['primitives'] if p.get('mode', 4) >= 4
                          for name in p['attributes']} - {'POSITION'}
                 self.assertLessEqual(names, {a['name'] for a in held['attributes']}, scene)
-            self.vsplit('bake', scene, '--profile', 'stream', '-o', 'stream.pmesh', '-f')
-            self.vsplit('verify', 'stream.pmesh', '--against', scene)
+            for name, flags in (('stream', ['--profile', 'stream']), ('exact', ['--lossless'])):
+                self.vsplit('bake', scene, *flags, '-o', f'{name}.pmesh', '-f')
+                self.vsplit('verify', f'{name}.pmesh', '--against', scene)
             for ratio, flags in ((1, ['--quantized', '--meshopt']), (0.3, [])):
                 out = f'{stem}-of-pmesh-{ratio}.glb'
                 self.vsplit('lods', f'{stem}.pmesh', '--ratios', ratio, *flags, '-o', out)
