@@ -58,6 +58,11 @@ def xxh64(data):
     return s ^ (s >> 32)
 
 
+def xxh32(data):
+    """The low half, which files have."""
+    return xxh64(data) & 0xFFFFFFFF
+
+
 def unzigzag(n):
     return (n >> 1) ^ (M32 if n & 1 else 0)
 
@@ -302,23 +307,23 @@ class File:
     def __init__(self, data):
         if data[:8] != b'\x8fpmesh\r\n':
             raise Bad('not a .pmesh file')
-        (self.version, flags, self.bytes, blocks, self.vertices, self.triangles, self.base_vertices,
-         self.base_triangles, self.splits, self.corners, self.moves) = struct.unpack_from('<IIQ8I', data, 8)
+        self.version, flags, self.base_vertices, self.base_triangles = struct.unpack_from('<4I', data, 8)
         if self.version != 1:
             raise Bad('not version 1')
-        if xxh64(data[:200]) != struct.unpack_from('<Q', data, 200)[0]:
+        if xxh32(data[:120]) != struct.unpack_from('<I', data, 120)[0]:
             raise Bad("the header's checksum")
         self.weighted, self.lossless = flags & 1, flags >> 1 & 1
-        base_offset, base_bytes, self.base_error, base_sum, table_sum = struct.unpack_from('<QIfQQ', data, 80)
-        self.origin = struct.unpack_from('<3d', data, 112)
-        self.step, self.position_bits, draco_bytes, self.largest_group, details_bytes, table_offset, details_sum = \
-            struct.unpack_from('<d4IQQ', data, 136)
-        details = data[208:208 + details_bytes]
-        base = data[base_offset:base_offset + base_bytes]
-        table = data[table_offset:table_offset + 44 * blocks]
-        for part, checksum in ((details, details_sum), (base, base_sum), (table, table_sum)):
-            if xxh64(part) != checksum:
+        *sizes, self.base_error, self.largest_group, self.position_bits = struct.unpack_from('<4IfII', data, 48)
+        draco_bytes = sizes.pop(2)
+        self.origin = struct.unpack_from('<3d', data, 76)  # of the lattice
+        self.step = struct.unpack_from('<d', data, 100)[0]
+        parts, at = [], 124
+        for size, wanted in zip(sizes, struct.unpack_from('<3I', data, 108)):
+            parts.append(data[at:at + size])
+            at += size
+            if xxh32(parts[-1]) != wanted:
                 raise Bad('a checksum of the front')
+        details, base, table = parts
         self.draco, self.extras = base[:draco_bytes], base[draco_bytes:]
         self.place_weights, at = [], 1
         for k in range(3):
@@ -327,6 +332,8 @@ class File:
                 flat = struct.unpack_from('<42b', details, at)
                 at += 42
             self.place_weights.append([[flat[(r * 2 + row) * 3:][:3] for row in range(2)] for r in range(7)])
+        if details[0] >> 3 & 1:
+            at += 24  # what to add for the source's coordinates
         self.attributes = []
         at += 2
         for _ in range(struct.unpack_from('<H', details, at - 2)[0]):
@@ -340,7 +347,42 @@ class File:
             name = details[at + 2:at + 2 + length].decode()
             at += 2 + length
             self.attributes.append((name, semantic, components, coding, bits, grid))
-        self.blocks = [struct.unpack_from('<QIQ5If', table, 44 * i) for i in range(blocks)]
+        self.read_table(table, at_end=124 + len(details) + len(base) + len(table))
+
+    def read_table(self, table, at_end):
+        """Blocks: offset, bytes, checksum, then splits, vertices, triangles, corner changes and moves up to their
+        end, and the error."""
+        at = 0
+
+        def number():
+            nonlocal at
+            value = shift = 0
+            while True:
+                byte = table[at]
+                at += 1
+                value |= (byte & 127) << shift
+                shift += 7
+                if byte < 128:
+                    return value
+
+        def unzigzag(n):
+            return n >> 1 ^ -(n & 1)
+
+        totals = [0, self.base_vertices, self.base_triangles, 0, 0]
+        error = struct.unpack('<I', struct.pack('<f', self.base_error))[0]
+        self.blocks, self.bytes = [], at_end
+        while at < len(table):
+            size, splits = number(), number()
+            vertices = unzigzag(number()) + splits
+            triangles = unzigzag(number()) + 2 * vertices
+            grown = [splits, vertices, triangles, number(), number()]
+            totals = [total + more for total, more in zip(totals, grown)]
+            error -= number()
+            wanted = struct.unpack_from('<I', table, at)[0]
+            at += 4
+            self.blocks.append((self.bytes, size, wanted, *totals, struct.unpack('<f', struct.pack('<I', error))[0]))
+            self.bytes += size
+        self.splits, self.vertices, self.triangles, self.corners, self.moves = totals
 
 
 # ---- The base mesh
@@ -1081,7 +1123,7 @@ def main():
     print(decoder.digest())
     for offset, size, checksum, splits, *_ in file.blocks:
         block = data[offset:offset + size]
-        if xxh64(block) != checksum:
+        if xxh32(block) != checksum:
             raise Bad("a block's checksum")
         decoder.decode_block(block, splits)
         print(decoder.digest())
