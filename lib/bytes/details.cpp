@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 
+#include "large_pages.hpp"
 #include "layout.hpp"
 
 namespace vsplit {
@@ -158,14 +159,14 @@ MeshOutput::MeshOutput(ProgressiveMesh& mesh, const Lattice& lattice, const Deta
 
 void MeshOutput::reserve(std::size_t vertices, std::size_t triangles, std::size_t splits, std::size_t corners,
                          std::size_t moves) {
-    mesh_->positions.reserve(vertices);
-    mesh_->parents.reserve(vertices);
+    reserve_large(mesh_->positions, vertices);
+    reserve_large(mesh_->parents, vertices);
     if (weights_) mesh_->weights.reserve(vertices);
-    mesh_->triangles.reserve(triangles);
+    reserve_large(mesh_->triangles, triangles);
     if (groups_) mesh_->groups.reserve(triangles);
-    mesh_->splits.reserve(splits);
-    mesh_->corner_changes.reserve(corners);
-    mesh_->moves.reserve(moves);
+    reserve_large(mesh_->splits, splits);
+    reserve_large(mesh_->corner_changes, corners);
+    reserve_large(mesh_->moves, moves);
     for (std::size_t i = 0; i < rules_.size(); ++i) {
         mesh_->attributes[i].values.reserve(rules_[i].components * vertices);
         mesh_->moved_values[i].reserve(rules_[i].components * moves);

@@ -6,13 +6,14 @@
 #include <bit>
 
 #include "fixed_point.hpp"
+#include "large_pages.hpp"
 
 namespace vsplit {
 
 void LiveStars::reserve(std::size_t vertex_count, std::size_t triangle_count) {
-    vertices.reserve(vertex_count);
-    triangles.reserve(triangle_count);
-    lines_.reserve(vertex_count);
+    reserve_large(vertices, vertex_count);
+    reserve_large(triangles, triangle_count);
+    reserve_large(lines_, vertex_count);
 }
 
 LiveStars::Slot* LiveStars::grow(std::uint32_t vertex, std::uint32_t slots) {
@@ -279,7 +280,7 @@ void LiveStars::split(const Star& star, const Cut& cut, const Lattice3& parent_a
         goes[k] = static_cast<std::uint32_t>(child_at[k] - parent_at[k]);
         both[k] = static_cast<std::uint32_t>(parent_at[k] + child_at[k]);
     }
-    if (parent_at != was)
+    if (parent_at[0] != was[0] || parent_at[1] != was[1] || parent_at[2] != was[2])
         for (std::uint32_t i = 0; i < ring; ++i) {
             LiveVertex& here = vertices[star.ring[i]];
             const std::uint32_t sectors = !star.closed && (i == 0 || i == n) ? 1 : 2;

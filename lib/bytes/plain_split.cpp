@@ -51,9 +51,16 @@ bool SplitCodec::find_cut(std::span<const std::uint32_t> taken, const SplitPlan&
 
 void SplitCodec::take_run(std::uint32_t child, SplitPlan& out) {
     const std::uint32_t n = star_.size, p = star_.centre, begin = run_.begin, end = begin + run_.length;
+    // A few at a time: each goes where it belongs.
     const std::size_t before = out.taken.size();
-    for (std::uint32_t i = begin; i < end; ++i) out.taken.push_back(star_.corner[i >= n ? i - n : i]);
-    std::sort(out.taken.begin() + static_cast<std::ptrdiff_t>(before), out.taken.end());
+    out.taken.resize(before + run_.length);
+    std::uint32_t* const taken = out.taken.data() + before;
+    for (std::uint32_t i = begin; i < end; ++i) {
+        const std::uint32_t corner = star_.corner[i >= n ? i - n : i];
+        std::uint32_t at = i - begin;
+        for (; at > 0 && taken[at - 1] > corner; --at) taken[at] = taken[at - 1];
+        taken[at] = corner;
+    }
     const auto group_of = [&](std::uint32_t i) {
         return groups.empty() ? 0u : groups[star_.corner[star_.closed && i >= n ? i - n : i] / 3];
     };
@@ -65,21 +72,26 @@ void SplitCodec::take_run(std::uint32_t child, SplitPlan& out) {
         implied_triangles_.push_back({child, p, star_.ring[begin]});
         implied_groups_.push_back(group_of(begin < n ? begin : n - 1));
     }
-    // The rings around the child and around what the parent keeps, without each other.
-    child_ring_.size = parent_ring_.size = 0;
+    // The ring around the child, without the parent.
+    child_ring_.size = 0;
     for (std::uint32_t i = begin; i <= end; ++i)
         child_ring_.vertex[child_ring_.size++] = star_.ring[star_.closed && i >= n ? i - n : i];
     child_ring_.open = !(run_.first_wing && run_.last_wing);
+}
+
+void SplitCodec::find_parent_ring() {
+    const std::uint32_t n = star_.size, begin = run_.begin, end = begin + run_.length;
+    parent_ring_.size = 0;
     parent_ring_.open = !star_.closed;
     if (star_.closed) {
         for (std::uint32_t i = end; i <= begin + n; ++i)
-            parent_ring_.vertex[parent_ring_.size++] = star_.ring[i % n];
-    } else {
-        for (std::uint32_t i = run_.last_wing ? end : n + 1; i <= n; ++i)
-            parent_ring_.vertex[parent_ring_.size++] = star_.ring[i];
-        for (std::uint32_t i = 0; i < (run_.first_wing ? begin + 1 : 0); ++i)
-            parent_ring_.vertex[parent_ring_.size++] = star_.ring[i];
+            parent_ring_.vertex[parent_ring_.size++] = star_.ring[i < n ? i : i < 2 * n ? i - n : i - 2 * n];
+        return;
     }
+    for (std::uint32_t i = run_.last_wing ? end : n + 1; i <= n; ++i)
+        parent_ring_.vertex[parent_ring_.size++] = star_.ring[i];
+    for (std::uint32_t i = 0; i < (run_.first_wing ? begin + 1 : 0); ++i)
+        parent_ring_.vertex[parent_ring_.size++] = star_.ring[i];
 }
 
 bool SplitCodec::find_plain(std::uint32_t primary, const SplitPlan& wanted, Cut& cut,

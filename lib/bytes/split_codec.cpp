@@ -99,8 +99,8 @@ const char* SplitCodec::code_mark(Coder& coder, std::uint32_t& primary) {
     if (is_batch()) {
         for (; cursor_ < older_; ++cursor_) {
             const std::uint32_t v = asked_[cursor_];
+            if (cursor_ + 16 < older_) live.fetch(asked_[cursor_ + 16]);
             if (kind_ == SweepKind::kBatch && unlocked(live.vertices[v]) == 0) continue;
-            if (cursor_ + 12 < older_) live.fetch(asked_[cursor_ + 12]);
             if (cursor_ + 8 < older_) live.fetch(asked_[cursor_ + 8], 0);
             if (cursor_ + 4 < older_) live.fetch(asked_[cursor_ + 4], 1);
             if (!ask_batch(coder, v, v == primary)) continue;

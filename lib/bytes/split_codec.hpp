@@ -180,6 +180,8 @@ class SplitCodec {
     bool find_cut(std::span<const std::uint32_t> taken, const SplitPlan& wanted, std::uint32_t child,
                   Cut& cut) const;
     void take_run(std::uint32_t child, SplitPlan& out);
+    /// The ring around what the parent of the run at hand keeps, without the child.
+    void find_parent_ring();
     /// Encoder: is this split a run of its parent's fan and nothing else? Then also which of its triangles
     /// the run implies, in order.
     bool find_plain(std::uint32_t primary, const SplitPlan& wanted, Cut& cut,

@@ -87,6 +87,7 @@ void SplitCodec::code_move(Coder& coder, const SplitPlan& wanted, std::size_t wh
         if (guided && !looks_at<Coder>()) {
             move.at = asked.at;
         } else if (guided) {
+            find_parent_ring();
             PlaceGuides guides = place_.guide_move(live, vertex, parent_ring_, out.births.back().at);
             bool rough = !Coder::kDecodes && asked.tolerance > 0 &&
                          may_be_rough(guides, asked.at, asked.tolerance, parent_ring_, out.births.back().at);

@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "../bytes/large_pages.hpp"
 #include "extend.hpp"
 #include "live_codes.hpp"
 #include "vsplit/live_buffers.hpp"
@@ -32,8 +33,8 @@ void LiveBuffers::begin(const ProgressiveMesh& mesh, std::uint32_t vertices, std
     totals_ = {vertices, triangles, corner_changes, moves, 0, 0, 0};
     total_splits_ = splits;
     corner_bytes_ = std::uint64_t{3} * triangles <= 0x1000000 ? 3 : 4;
-    positions_.reserve(vertices);
-    triangles_.reserve(triangles);
+    reserve_large(positions_, vertices);
+    reserve_large(triangles_, triangles);
     if (!mesh.weights.empty()) weights_.reserve(vertices), moved_weights_.reserve(moves);
     for (const Attribute& attribute : mesh.attributes) {
         Values& values = attributes_.emplace_back();
@@ -42,11 +43,11 @@ void LiveBuffers::begin(const ProgressiveMesh& mesh, std::uint32_t vertices, std
         values.moved.reserve(std::size_t{attribute.components} * moves);
     }
     if (!mesh.groups.empty()) groups_.reserve(triangles);
-    parents_.reserve(vertices);
-    codes_.reserve(splits);
-    corners_.reserve(std::size_t{corner_bytes_} * corner_changes + 1);
+    reserve_large(parents_, vertices);
+    reserve_large(codes_, splits);
+    reserve_large(corners_, std::size_t{corner_bytes_} * corner_changes + 1);
     corners_.push_back(0);
-    packed_ ? steps_.reserve(moves) : moved_positions_.reserve(moves);
+    packed_ ? reserve_large(steps_, moves) : reserve_large(moved_positions_, moves);
     checkpoints_.reserve(splits / kInterval + 1);
 
     known_.vertices = mesh.base_vertices;
@@ -162,7 +163,7 @@ void LiveBuffers::append_moves(const ProgressiveMesh& mesh) {
         if (!steps_.empty()) {
             // One that is not on the grid, or too far for it: all are kept as they are, from the first on.
             steps_ = std::vector<std::array<std::int16_t, 3>>();
-            moved_positions_.reserve(totals_.moves);
+            reserve_large(moved_positions_, totals_.moves);
             std::vector<std::uint32_t> last(known_.vertices, kNever);
             from = 0;
             before = moves_before(mesh, 0, end, last);
