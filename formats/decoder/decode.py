@@ -162,7 +162,7 @@ class Bit:
 
     def learn(self, bit):
         rate = RATES[self.seen]
-        if self.seen + 1 < 128:
+        if self.seen + 1 < 64:
             self.seen += 1
         if bit:
             self.one += ((65535 - 24 - self.one) * rate) >> 16
@@ -178,9 +178,9 @@ class Coder:
 
     def byte(self):
         self.taken += 1
-        if self.taken > len(self.data):
+        if self.taken > len(self.data) + 4:
             raise Bad('a stream ends too early')
-        return self.data[self.taken - 1]
+        return self.data[self.taken - 1] if self.taken <= len(self.data) else 0
 
     def normalise(self):
         while self.range < 1 << 24:
@@ -252,30 +252,39 @@ class Number:
         return high << (count - 2) | coder.raw(count - 2)
 
 
-DIGIT_PRIOR = [40, 40, 40, 40, 40, 40, 40, 40, 40, 60, 80, 120, 170, 240, 340, 480, 680, 960, 1360, 1920, 2700, 3900,
-               5500, 7800, 11000, 14000, 16500, 17500, 16500, 12500, 7600, 3500, 1300, 500, 250, 150, 100, 60, 40, 40,
-               40, 40, 40, 40, 40, 40, 40, 40, 40]
+ALONG_PRIORS = [
+    [442, 553, 702, 842, 1003, 1215, 1157, 863, 383, 117, 13, 4, 2, 1, 1, 1],
+    [465, 631, 833, 1095, 1310, 1356, 985, 522, 158, 30, 5, 2, 1, 1, 1, 1],
+    [654, 850, 1037, 1228, 1198, 1054, 655, 297, 67, 10, 3, 2, 1, 1, 1, 1]]
+ACROSS_PRIORS = [
+    [533, 652, 760, 973, 998, 1075, 911, 675, 374, 166, 74, 32, 16, 11, 6, 4],
+    [770, 959, 1038, 1120, 953, 791, 484, 242, 111, 55, 36, 20, 12, 6, 4, 2],
+    [1397, 1347, 872, 665, 229, 132, 44, 15, 5, 3, 2, 1, 1, 1, 1, 1]]
+SECOND_PRIOR = [(46, 49), (46, 48), (45, 48), (41, 46), (33, 42), (25, 36), (16, 30), (13, 28), (20, 35), (26, 37)]
 
 
 class Residual:
-    def __init__(self, rows, kinds):
+    def __init__(self, rows, kinds, prior):
         self.rows, self.kinds = rows, kinds
-        self.second = [[Bit() for _ in range(3)] for _ in range(64)]
+        self.second = []
+        for r in range(64):
+            second, third = SECOND_PRIOR[min(max(r - 14, 0), 9)]
+            self.second.append([Bit(655 * second, 6), Bit(655 * third, 6), Bit(655 * third, 6)])
         self.sign = [Bit() for _ in range(64)]
         self.digits = []
         for row in range(rows):
-            weight = [0] * 64
-            for d in range(32):
-                at = min(max(2 * d - row + 24, 0), 48)
-                weight[32 + d] = 1 if d > 26 else DIGIT_PRIOR[at]
-            weight[32] += sum(DIGIT_PRIOR[at] for at in range(22 - row, -1, -2))
+            weight = [0] * 32
+            weight.append(prior[row & 1] + sum(prior[at] for at in range(12 - row, -1, -2)))
+            for d in range(1, 32):
+                at = 2 * d + 12 - row
+                weight.append(prior[at] if at < 16 else 1)
             for node in range(31, 0, -1):
                 weight[node] = weight[2 * node] + weight[2 * node + 1]
             for _ in range(kinds):
                 model = Symbol(5)
                 for node in range(1, 32):
                     one = weight[2 * node + 1] * 65536 // weight[node]
-                    model.nodes[node] = Bit(min(max(one, 64), 65472), 4)
+                    model.nodes[node] = Bit(min(max(one, 64), 65472), 6)
                 self.digits.append(model)
 
     def decode(self, coder, scale, kind, side=None):
@@ -598,10 +607,10 @@ def rough_shift(scale, bent):
 class Places:
     def __init__(self, weights):
         self.weights = weights
-        self.first = [Residual(15, 6) for _ in range(3)]
-        self.second = [Residual(15, 6) for _ in range(3)]
-        self.third = [Residual(15, 4) for _ in range(3)]
-        self.free = Residual(1, 1)
+        self.first = [Residual(15, 6, prior) for prior in ALONG_PRIORS]
+        self.second = [Residual(15, 6, prior) for prior in ALONG_PRIORS]
+        self.third = [Residual(15, 4, prior) for prior in ACROSS_PRIORS]
+        self.free = Residual(1, 1, ALONG_PRIORS[0])
 
     def decode(self, coder, live, kind, parent, ring, open_ring, rough, child=None):
         origin = live.at[parent]
@@ -789,15 +798,19 @@ class Decoder:
         coder.end()
         self.live.link_twins(0)
 
-    def decode_block(self, data, splits_end):
+    def decode_block(self, data, splits_end, error_before):
         coder = Coder(data)
+        begin = len(self.splits)
         while len(self.splits) < splits_end:
             if self.marked_left == 0 and self.unmarked_left == 0:
                 self.kind = self.kinds.decode(coder)
                 if self.kind == 3:
                     raise Bad('a sweep is of no known kind')
                 self.marked_left, self.unmarked_left = self.marked.decode(coder), self.unmarked.decode(coder)
-                self.error_bits -= self.error.decode(coder)
+                if len(self.splits) == begin:
+                    self.error_bits = struct.unpack('<I', struct.pack('<f', error_before))[0]
+                else:
+                    self.error_bits -= self.error.decode(coder)
                 alive = len(self.live.at)
                 self.sweep += 1
                 self.older = alive
@@ -1121,11 +1134,13 @@ def main():
     file = File(data)
     decoder = Decoder(file)
     print(decoder.digest())
-    for offset, size, checksum, splits, *_ in file.blocks:
+    error_before = file.base_error
+    for offset, size, checksum, splits, *_, error in file.blocks:
         block = data[offset:offset + size]
         if xxh32(block) != checksum:
             raise Bad("a block's checksum")
-        decoder.decode_block(block, splits)
+        decoder.decode_block(block, splits, error_before)
+        error_before = error
         print(decoder.digest())
 
 

@@ -68,16 +68,21 @@ const char* BlockDecoder::State::begin_base(BaseMesh base, std::span<const std::
     RangeDecoder coder(extras);
     codec.code_base(coder);
     if (coder.overrun()) return "the base mesh's stream ends too early";
-    if (!only_zeros(extras.subspan(coder.taken()))) return "the base mesh's stream is longer than it needs";
+    if (!only_zeros(extras.subspan(std::min(coder.taken(), extras.size()))))
+        return "the base mesh's stream is longer than it needs";
     output.add_base(codec);
     return output.sound() ? nullptr : kUnsoundValue;
 }
 
 const char* BlockDecoder::State::decode_splits(std::span<const std::byte> stored, const BlockInfo& block) {
+    const std::size_t begin = mesh.splits.size();
+    const float before = blocks == 0 ? info.base_error : info.blocks[blocks - 1].error;
     RangeDecoder coder(stored);
     while (mesh.splits.size() < block.splits_end) {
         if (marked_left == 0 && unmarked_left == 0) {
             SweepHead head;
+            head.begins_block = mesh.splits.size() == begin;
+            head.error_bits = std::bit_cast<std::uint32_t>(before);
             if (const char* fault = codec.code_head(coder, head)) return fault;
             marked_left = head.marked;
             unmarked_left = head.unmarked;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <limits>
 
 #include "place_fit.hpp"
 
@@ -37,9 +38,14 @@ const char* SplitCodec::code_head(Coder& coder, SweepHead& head) {
     head.kind = kind_ = static_cast<SweepKind>(kind);
     head.marked = marked_.code(coder, head.marked);
     head.unmarked = unmarked_.code(coder, head.unmarked);
-    const std::uint32_t fall = error_.code(coder, error_bits_ - head.error_bits);
-    if (fall > error_bits_) return "a sweep's error is negative";
-    head.error_bits = error_bits_ -= fall;
+    if (head.begins_block) {
+        if (head.error_bits > error_bits_) return "a sweep's error grows";
+        error_bits_ = head.error_bits;
+    } else {
+        const std::uint32_t fall = error_.code(coder, error_bits_ - head.error_bits);
+        if (fall > error_bits_) return "a sweep's error is negative";
+        head.error_bits = error_bits_ -= fall;
+    }
     const std::uint32_t alive = live.vertex_count();
     if (head.marked == 0 && head.unmarked == 0) return "a sweep is empty";
     ++sweep_;

@@ -71,6 +71,9 @@ struct SweepHead {
     SweepKind kind = SweepKind::kRounds;
     std::uint32_t marked = 0;    ///< Splits found by their first parent, in its order.
     std::uint32_t unmarked = 0;  ///< Splits without parents, after them.
+    /// Whether no split of its block precedes it: then the table has told the error, and the decoder too
+    /// gives it.
+    bool begins_block = false;
     std::uint32_t error_bits = 0;
 };
 

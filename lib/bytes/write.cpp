@@ -93,7 +93,7 @@ Result<Encoded> encode(const ProgressiveMesh& mesh, const WriteOptions& options)
         first.codec().fit = &fit;
         first.codec().fit_every = static_cast<std::uint32_t>(mesh.splits.size() / kFitted + 1);
         first.code_base(look);
-        first.code_splits(look, [](const SplitPlan&, float, bool) {});
+        first.code_splits(look, [](const SplitPlan&, float, bool) { return false; });
     }
     numbers.details.weights = fit.solve();
 
@@ -110,6 +110,9 @@ Result<Encoded> encode(const ProgressiveMesh& mesh, const WriteOptions& options)
     encoder.code_base(coder);
     const std::vector<std::byte> extras = coder.finish();
     out.base.insert(out.base.end(), extras.begin(), extras.end());
+    const std::size_t base_parts = std::max(mesh.base_vertices, mesh.base_triangles);
+    if (out.base.size() * kPartsPerByte < base_parts)
+        out.base.resize((base_parts + kPartsPerByte - 1) / kPartsPerByte);
     output.add_base(encoder.codec());
 
     // Blocks start small, so that the first bytes already refine, and grow with what precedes them.
@@ -142,6 +145,7 @@ Result<Encoded> encode(const ProgressiveMesh& mesh, const WriteOptions& options)
         ++made;
         if (coder.size() >= target || (sweep_end && double(coder.size()) >= kEnoughBlock * double(target)))
             end_block();
+        return made == ended;
     });
     if (made > ended) end_block();
 
