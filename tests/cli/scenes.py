@@ -254,12 +254,15 @@ def crowded(parts=110):
     s.node(mesh=s.add('meshes', {'primitives': [{'attributes': {'POSITION': s.accessor(ring, bounds=True)}, 'mode': 6, 'material': coat}]}), translation=[-3, 0, 0])
     points, normals, uvs, corners = sheet(10)
     share = [[math.exp(-3 * (8 * p[1] - j) ** 2 / 8) for j in range(8)] for p in points]
-    rows = [[round(w / sum(row), 4) for w in row] for row in share]
+    rows = [[round(4096 * w / sum(row)) for w in row] for row in share]
     for row in rows:
-        row[0] += 1 - sum(row)
-    joints = [s.accessor([tuple(range(4 * k, 4 * k + 4))] * len(points), UBYTE, 'VEC4') for k in range(2)]
+        row[row.index(max(row))] += 4096 - sum(row)
+    rows = [[w / 4096 for w in row] for row in rows]
+    # A joint without weight is 0.
+    joints = [s.accessor([tuple(j if row[j] > 0 else 0 for j in range(4 * k, 4 * k + 4)) for row in rows], UBYTE, 'VEC4') for k in range(2)]
     weights = [s.accessor([tuple(row[4 * k:4 * k + 4]) for row in rows], kind='VEC4') for k in range(2)]
-    bones = [s.node(name=f'bone {j}', translation=[0, j / 8, 0]) for j in range(8)]
+    bones = [s.node(root=False, name=f'bone {j}', translation=[0, j / 8, 0]) for j in range(8)]
+    s.node(name='bones', children=bones)
     inverse = s.accessor([[1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, -j / 8, 0, 1] for j in range(8)], kind='MAT4')
     mesh = s.add('meshes', {'primitives': [{'attributes': {'POSITION': s.accessor(points, bounds=True), 'NORMAL': s.accessor(normals),
                                                            'JOINTS_0': joints[0], 'JOINTS_1': joints[1], 'WEIGHTS_0': weights[0], 'WEIGHTS_1': weights[1]},
