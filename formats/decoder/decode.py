@@ -733,6 +733,60 @@ def restore(attribute, numbers):
 
 # ---- Sweeps and splits
 
+class Directions:
+    """Of one attribute: two numbers on an octahedron."""
+
+    def __init__(self, bits):
+        self.most = (1 << (bits - 1)) - 1
+        self.size = 16 * self.most
+        self.missed = [[0, 0] for _ in range(16)]
+        self.first = [Number() for _ in range(24)]
+        self.second = [[Number() for _ in range(24)] for _ in range(4)]
+
+    def direction(self, numbers):
+        x, y = (min(max(n, -self.most), self.most) for n in numbers)
+        z = self.most - abs(x) - abs(y)
+        return self.fold(x, y, self.most) + [z] if z < 0 else [x, y, z]
+
+    @staticmethod
+    def fold(x, y, size):
+        return [abs(y) - size if x < 0 else size - abs(y), abs(x) - size if y < 0 else size - abs(x)]
+
+    def sized(self, d):
+        whole = sum(map(abs, d))
+        if whole == 0:
+            return [0, 0, self.size]
+        over = max(0, whole.bit_length() - 40)
+        parts = [(abs(n) >> over) * self.size // max(whole >> over, 1) for n in d]
+        return [-part if n < 0 else part for part, n in zip(parts, d)]
+
+    def guess(self, geometric, mean):
+        self.guesses = [self.sized(geometric), self.sized(mean)]
+        apart = sum(abs(a - b) for a, b in zip(*self.guesses))
+        self.late = self.missed[min(half_octave(apart), 31) // 2]
+        g, m = (missed + 1 for missed in self.late)
+        share = 64 * m // (g + m)
+        x, y, z = self.sized([share * a + (64 - share) * b for a, b in zip(*self.guesses)])
+        if z < 0:
+            x, y = self.fold(x, y, self.size)
+        self.at = [(x + 8) >> 4, (y + 8) >> 4]
+        self.scale = min(half_octave(min(g, m)) // 2, 23)
+
+    def decode(self, coder):
+        first = self.first[self.scale].decode(coder)
+        second = self.second[min(first.bit_length(), 3)][self.scale].decode(coder)
+        n = [signed(self.at[0] + unzigzag(first) & M32), signed(self.at[1] + unzigzag(second) & M32)]
+        for i in range(2):
+            if abs(n[i]) > self.most:
+                n[i] = signed((-2 if n[i] < 0 else 2) * self.most - n[i] & M32)
+                n[1 - i] = signed(-n[1 - i] & M32)
+        now = self.direction(n)
+        for k in range(2):
+            off = sum(abs(16 * a - b) for a, b in zip(now, self.guesses[k]))
+            self.late[k] += (off * off - self.late[k]) >> 5
+        return n
+
+
 class Decoder:
     def __init__(self, file):
         self.file, self.live = file, Live()
@@ -765,6 +819,11 @@ class Decoder:
         self.parent_kind, self.corner_kind = Symbol(2), Symbol(2)
         self.finer_numbers = [Number() for _ in range(3)]
         self.value_numbers = [[Number() for _ in range(14)] for _ in self.mixes]
+        self.directions, at = {}, 0  # by their first number's place
+        for attribute in file.attributes:
+            if attribute[3] == 4:
+                self.directions[at] = Directions(attribute[4])
+            at += numbers_of(attribute)
         self.last_place, self.last_group = [0, 0, 0], 0
 
         # The progressive mesh.
@@ -872,9 +931,16 @@ class Decoder:
     def decode_finer(self, coder):
         return [n.decode(coder) for n in self.finer_numbers] if self.file.lossless else [0, 0, 0]
 
-    def decode_values(self, coder, predicted, scales):
-        return [signed((p + unzigzag(models[s].decode(coder))) & M32)
-                for p, s, models in zip(predicted, scales, self.value_numbers)]
+    def decode_values(self, coder, predicted, scales, guessed=False):
+        values = []
+        while len(values) < len(predicted):
+            i = len(values)
+            if guessed and i in self.directions:
+                values += self.directions[i].decode(coder)
+            else:
+                read = self.value_numbers[i][scales[i]].decode(coder)
+                values.append(signed((predicted[i] + unzigzag(read)) & M32))
+        return values
 
     def decode_group(self, coder, predicted):
         if not coder.bit(self.group_stays):
@@ -921,8 +987,9 @@ class Decoder:
                     place = self.places.decode_free(coder, live.at[parent] if parent != NONE else self.last_place)
                 finer = self.decode_finer(coder)
             self.last_place = place
-            births.append((parent, place, finer,
-                           self.decode_values(coder, *self.predict_values(parent, child_ring if run else None, births))))
+            predicted = self.predict_values(parent, child_ring if run else None, births)
+            guessed = run is not None and self.guess_directions(parent, place, child_ring, run)
+            births.append((parent, place, finer, self.decode_values(coder, *predicted, guessed)))
             if moving:
                 guide = (parent_ring, not star.closed, place) if run else None
                 self.decode_move(coder, parent, guide, moves)
@@ -961,7 +1028,8 @@ class Decoder:
         place = self.places.decode(coder, self.live, 1 if moving else 0, parent, child_ring, not (run[2] and run[3]), rough)
         finer = self.decode_finer(coder)
         self.last_place = place
-        values = self.decode_values(coder, *self.predict_values(parent, child_ring, []))
+        values = self.decode_values(coder, *self.predict_values(parent, child_ring, []),
+                                    self.guess_directions(parent, place, child_ring, run))
         if moving:
             self.decode_move(coder, parent, (parent_ring, not star.closed, place), moves)
         groups = [self.decode_group(coder, group) for _, group in implied] if self.group_bits else []
@@ -1012,6 +1080,19 @@ class Decoder:
             spread = mean16(sum(map(abs, offsets)), len(ring) + 1)
             scales.append(min((half_octave(spread) + 1) // 2 + 1, 13))
         return predicted, scales
+
+    def guess_directions(self, parent, place, ring, run):
+        to = [[a - b for a, b in zip(self.live.at[v], place)] for v in ring]
+        p = [a - b for a, b in zip(self.live.at[parent], place)]
+        row = ([p] if run[2] else []) + to + ([p] if run[3] else [])
+        geometric = [0, 0, 0]
+        for a, b in zip(row, row[1:]):
+            geometric = [geometric[k] + a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3]
+                         for k in range(3)]
+        for at, model in self.directions.items():
+            near = [model.direction(self.values[v][at:at + 2]) for v in [parent] + ring]
+            model.guess(geometric, [sum(d[k] for d in near) for k in range(3)])
+        return True
 
     def decode_move(self, coder, vertex, guide, moves):
         guided = guide is not None

@@ -136,8 +136,14 @@ StreamShape shape_of(const Details& details, bool weights, bool lossless, std::u
     shape.lossless = lossless;
     shape.group_bits = static_cast<std::uint32_t>(std::bit_width(largest_group));
     for (const ValueRule& rule : details.rules)
-        for (std::uint32_t i = 0; i < rule.numbers(); ++i) shape.mixes.push_back(rule.mixes(i));
-    if (weights) shape.mixes.push_back(false);
+        for (std::uint32_t i = 0; i < rule.numbers(); ++i) {
+            shape.mixes.push_back(rule.mixes(i));
+            shape.direction_bits.push_back(rule.coding == ValueCoding::kOctahedral && i == 0 ? rule.bits : 0);
+        }
+    if (weights) {
+        shape.mixes.push_back(false);
+        shape.direction_bits.push_back(0);
+    }
     return shape;
 }
 

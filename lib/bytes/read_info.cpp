@@ -30,7 +30,10 @@ std::uint64_t memory_needed(const FileInfo& info, const Details& details) {
     // Lists of slots have room for eight, and double as stars grow.
     const std::uint64_t lists = 8 * (8 * std::uint64_t{info.vertices} + 12 * std::uint64_t{info.triangles} +
                                      4 * std::uint64_t{info.corner_changes});
-    return info.vertices * (vertex + live_vertex) + info.triangles * (3 * sizeof(Triangle) + groups) + lists +
+    const std::uint64_t models =
+        SplitCodec::model_bytes(shape_of(details, info.has_weights, info.lossless, info.largest_group));
+    return models + info.vertices * (vertex + live_vertex) +
+           info.triangles * (3 * sizeof(Triangle) + groups) + lists +
            std::uint64_t{info.splits} * sizeof(Split) +
            std::uint64_t{info.corner_changes} * sizeof(CornerChange) +
            info.moves * (sizeof(VertexMove) + 4 * floats) +

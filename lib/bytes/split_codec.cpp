@@ -25,8 +25,16 @@ SplitCodec::SplitCodec(const StreamShape& shape, const PlaceWeights& weights)
       place_(weights),
       error_bits_(std::bit_cast<std::uint32_t>(std::numeric_limits<float>::max())) {
     value_.resize(shape.stride());
+    for (const std::uint32_t bits : shape.direction_bits)
+        if (bits > 0) normal_.emplace_back(bits);
     predicted_.resize(shape.stride());
     scales_.resize(shape.stride());
+}
+
+std::uint64_t SplitCodec::model_bytes(const StreamShape& shape) {
+    const auto directions = std::count_if(shape.direction_bits.begin(), shape.direction_bits.end(),
+                                          [](auto bits) { return bits > 0; });
+    return shape.stride() * sizeof(ValueModel) + static_cast<std::uint64_t>(directions) * sizeof(NormalModel);
 }
 
 // ---- Sweeps
