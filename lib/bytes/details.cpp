@@ -128,6 +128,15 @@ std::optional<Details> decode_details(std::span<const std::byte> bytes, const ch
         fault = "the details are longer than they need";
         return std::nullopt;
     }
+    // Readers that stream have no other occasion to say so.
+    std::vector<Attribute> named;
+    for (const ValueRule& rule : details.rules)
+        named.push_back({rule.name, rule.semantic, rule.components, {}});
+    if (const char* wrong = attributes_fault(named, 0)) {
+        fault = wrong;
+        at = 0;
+        return std::nullopt;
+    }
     return details;
 }
 
