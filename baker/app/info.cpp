@@ -36,13 +36,20 @@ class Annotation {
     void u8(const std::string& meaning) { field<std::uint8_t>("u8", meaning); }
     void u16(const std::string& meaning) { field<std::uint16_t>("u16", meaning); }
     void u32(const std::string& meaning) { field<std::uint32_t>("u32", meaning); }
-    void u64(const std::string& meaning) { field<std::uint64_t>("u64", meaning); }
     void f32(const std::string& meaning) { field<float>("f32", meaning); }
     void f64(const std::string& meaning) { field<double>("f64", meaning); }
     void checksum(const std::string& meaning) {
-        std::uint64_t value;
+        std::uint32_t value;
         std::memcpy(&value, bytes_.data() + at_, sizeof(value));
-        line(8, "u64", fmt::format("{:016x}", value), "checksum of " + meaning);
+        line(4, "u32", fmt::format("{:08x}", value), "checksum of " + meaning);
+    }
+    /// Of seven bits a byte.
+    void number(const std::string& meaning) {
+        std::uint64_t value = 0, size = 0;
+        do {
+            value |= std::uint64_t{next_byte(size) & 127} << (7 * size);
+        } while (next_byte(size++) & 128);
+        line(size, "num", fmt::format("{}", value), meaning);
     }
     void text(std::size_t size, const std::string& meaning) {
         std::string value;
@@ -72,32 +79,26 @@ void annotate_file(std::span<const std::byte> bytes, const FileInfo& info) {
     a.text(8, "magic");
     a.u32("version");
     a.u32("flags: 1 painted weights, 2 lossless");
-    a.u64("length of the file");
-    a.u32("blocks");
-    for (const char* what : {"vertices", "triangles", "vertices of the base mesh",
-                             "triangles of the base mesh", "splits", "corner changes", "moves"})
-        a.u32(what);
+    a.u32("vertices of the base mesh");
+    a.u32("triangles of the base mesh");
     for (const char* what : {"least x", "least y", "least z", "greatest x", "greatest y", "greatest z"})
         a.f32(what);
-    a.u64("offset of the base mesh");
+    a.u32("bytes of the details");
     a.u32("bytes of the base mesh");
+    a.u32("bytes of the base mesh that are Draco's");
+    a.u32("bytes of the table");
     a.f32("geometric error of the base mesh");
-    a.checksum("the base mesh");
-    a.checksum("the table");
+    a.u32("largest group");
+    a.u32("bits of the lattice, 0 if lossless");
     for (const char* what : {"lattice origin x", "lattice origin y", "lattice origin z", "lattice step"})
         a.f64(what);
-    a.u32("bits of the lattice, 0 if lossless");
-    a.u32("bytes of the base mesh that are Draco's");
-    a.u32("largest group");
-    a.u32("bytes of the details");
-    a.u64("offset of the table");
-    a.checksum("the details");
-    for (const char* what : {"origin x", "origin y", "origin z"}) a.f64(what);
-    a.checksum("the header");
+    for (const char* what : {"the details", "the base mesh", "the table", "the header"}) a.checksum(what);
     const std::uint32_t kinds = a.next_byte(0);
-    a.u8("kinds of prediction with weights");
+    a.u8("what follows: weights of prediction of kinds 0 to 2, origin");
     for (std::uint32_t kind = 0; kind < 3; ++kind)
         if (kinds >> kind & 1) a.part(42, fmt::format("weights of prediction, kind {}", kind));
+    for (const char* what : {"origin x", "origin y", "origin z"})
+        if (kinds >> 3 & 1) a.f64(what);
     a.u16("attributes");
     for (const AttributeInfo& attribute : info.attributes) {
         const std::uint32_t components = a.next_byte(1), coding = a.next_byte(2);
@@ -117,12 +118,14 @@ void annotate_file(std::span<const std::byte> bytes, const FileInfo& info) {
     a.part(info.base_bytes - info.base_draco_bytes, "base mesh: stream");
     for (std::size_t i = 0; i < info.blocks.size(); ++i) {
         const std::string block = fmt::format("block {}: ", i);
-        a.u64(block + "offset");
-        a.u32(block + "bytes");
+        a.number(block + "bytes");
+        a.number(block + "splits");
+        a.number(block + "vertices against splits, zigzag");
+        a.number(block + "triangles against twice the vertices, zigzag");
+        a.number(block + "corner changes");
+        a.number(block + "moves");
+        a.number(block + "fall of the geometric error's bits");
         a.checksum(fmt::format("block {}", i));
-        for (const char* what : {"splits", "vertices", "triangles", "corner changes", "moves"})
-            a.u32(block + what + " up to its end");
-        a.f32(block + "geometric error after it");
     }
     for (std::size_t i = 0; i < info.blocks.size(); ++i)
         a.part(info.blocks[i].bytes, fmt::format("block {}", i));
@@ -133,7 +136,7 @@ Json to_json(const FileInfo& info) {
     for (const BlockInfo& b : info.blocks)
         blocks.push_back({{"offset", b.offset},
                           {"bytes", b.bytes},
-                          {"checksum", fmt::format("{:016x}", b.checksum)},
+                          {"checksum", fmt::format("{:08x}", b.checksum)},
                           {"splits", b.splits_end},
                           {"vertices", b.vertices_end},
                           {"triangles", b.triangles_end},
@@ -204,7 +207,7 @@ int InfoCommand::run() const {
         return fail_input(
             input,
             {bytes.size() < info->file_bytes ? ErrorCode::kTruncated : ErrorCode::kMalformed,
-             fmt::format("the file has {} bytes, its header announces {}", bytes.size(), info->file_bytes),
+             fmt::format("the file has {} bytes, its table announces {}", bytes.size(), info->file_bytes),
              std::min<std::uint64_t>(bytes.size(), info->file_bytes), 0});
     if (common.quiet) return kDone;
     if (annotate) {

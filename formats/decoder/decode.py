@@ -58,6 +58,11 @@ def xxh64(data):
     return s ^ (s >> 32)
 
 
+def xxh32(data):
+    """The low half, which files have."""
+    return xxh64(data) & 0xFFFFFFFF
+
+
 def unzigzag(n):
     return (n >> 1) ^ (M32 if n & 1 else 0)
 
@@ -157,7 +162,7 @@ class Bit:
 
     def learn(self, bit):
         rate = RATES[self.seen]
-        if self.seen + 1 < 128:
+        if self.seen + 1 < 64:
             self.seen += 1
         if bit:
             self.one += ((65535 - 24 - self.one) * rate) >> 16
@@ -173,9 +178,9 @@ class Coder:
 
     def byte(self):
         self.taken += 1
-        if self.taken > len(self.data):
+        if self.taken > len(self.data) + 4:
             raise Bad('a stream ends too early')
-        return self.data[self.taken - 1]
+        return self.data[self.taken - 1] if self.taken <= len(self.data) else 0
 
     def normalise(self):
         while self.range < 1 << 24:
@@ -247,30 +252,39 @@ class Number:
         return high << (count - 2) | coder.raw(count - 2)
 
 
-DIGIT_PRIOR = [40, 40, 40, 40, 40, 40, 40, 40, 40, 60, 80, 120, 170, 240, 340, 480, 680, 960, 1360, 1920, 2700, 3900,
-               5500, 7800, 11000, 14000, 16500, 17500, 16500, 12500, 7600, 3500, 1300, 500, 250, 150, 100, 60, 40, 40,
-               40, 40, 40, 40, 40, 40, 40, 40, 40]
+ALONG_PRIORS = [
+    [442, 553, 702, 842, 1003, 1215, 1157, 863, 383, 117, 13, 4, 2, 1, 1, 1],
+    [465, 631, 833, 1095, 1310, 1356, 985, 522, 158, 30, 5, 2, 1, 1, 1, 1],
+    [654, 850, 1037, 1228, 1198, 1054, 655, 297, 67, 10, 3, 2, 1, 1, 1, 1]]
+ACROSS_PRIORS = [
+    [533, 652, 760, 973, 998, 1075, 911, 675, 374, 166, 74, 32, 16, 11, 6, 4],
+    [770, 959, 1038, 1120, 953, 791, 484, 242, 111, 55, 36, 20, 12, 6, 4, 2],
+    [1397, 1347, 872, 665, 229, 132, 44, 15, 5, 3, 2, 1, 1, 1, 1, 1]]
+SECOND_PRIOR = [(46, 49), (46, 48), (45, 48), (41, 46), (33, 42), (25, 36), (16, 30), (13, 28), (20, 35), (26, 37)]
 
 
 class Residual:
-    def __init__(self, rows, kinds):
+    def __init__(self, rows, kinds, prior):
         self.rows, self.kinds = rows, kinds
-        self.second = [[Bit() for _ in range(3)] for _ in range(64)]
+        self.second = []
+        for r in range(64):
+            second, third = SECOND_PRIOR[min(max(r - 14, 0), 9)]
+            self.second.append([Bit(655 * second, 6), Bit(655 * third, 6), Bit(655 * third, 6)])
         self.sign = [Bit() for _ in range(64)]
         self.digits = []
         for row in range(rows):
-            weight = [0] * 64
-            for d in range(32):
-                at = min(max(2 * d - row + 24, 0), 48)
-                weight[32 + d] = 1 if d > 26 else DIGIT_PRIOR[at]
-            weight[32] += sum(DIGIT_PRIOR[at] for at in range(22 - row, -1, -2))
+            weight = [0] * 32
+            weight.append(prior[row & 1] + sum(prior[at] for at in range(12 - row, -1, -2)))
+            for d in range(1, 32):
+                at = 2 * d + 12 - row
+                weight.append(prior[at] if at < 16 else 1)
             for node in range(31, 0, -1):
                 weight[node] = weight[2 * node] + weight[2 * node + 1]
             for _ in range(kinds):
                 model = Symbol(5)
                 for node in range(1, 32):
                     one = weight[2 * node + 1] * 65536 // weight[node]
-                    model.nodes[node] = Bit(min(max(one, 64), 65472), 4)
+                    model.nodes[node] = Bit(min(max(one, 64), 65472), 6)
                 self.digits.append(model)
 
     def decode(self, coder, scale, kind, side=None):
@@ -302,23 +316,23 @@ class File:
     def __init__(self, data):
         if data[:8] != b'\x8fpmesh\r\n':
             raise Bad('not a .pmesh file')
-        (self.version, flags, self.bytes, blocks, self.vertices, self.triangles, self.base_vertices,
-         self.base_triangles, self.splits, self.corners, self.moves) = struct.unpack_from('<IIQ8I', data, 8)
+        self.version, flags, self.base_vertices, self.base_triangles = struct.unpack_from('<4I', data, 8)
         if self.version != 1:
             raise Bad('not version 1')
-        if xxh64(data[:200]) != struct.unpack_from('<Q', data, 200)[0]:
+        if xxh32(data[:120]) != struct.unpack_from('<I', data, 120)[0]:
             raise Bad("the header's checksum")
         self.weighted, self.lossless = flags & 1, flags >> 1 & 1
-        base_offset, base_bytes, self.base_error, base_sum, table_sum = struct.unpack_from('<QIfQQ', data, 80)
-        self.origin = struct.unpack_from('<3d', data, 112)
-        self.step, self.position_bits, draco_bytes, self.largest_group, details_bytes, table_offset, details_sum = \
-            struct.unpack_from('<d4IQQ', data, 136)
-        details = data[208:208 + details_bytes]
-        base = data[base_offset:base_offset + base_bytes]
-        table = data[table_offset:table_offset + 44 * blocks]
-        for part, checksum in ((details, details_sum), (base, base_sum), (table, table_sum)):
-            if xxh64(part) != checksum:
+        *sizes, self.base_error, self.largest_group, self.position_bits = struct.unpack_from('<4IfII', data, 48)
+        draco_bytes = sizes.pop(2)
+        self.origin = struct.unpack_from('<3d', data, 76)  # of the lattice
+        self.step = struct.unpack_from('<d', data, 100)[0]
+        parts, at = [], 124
+        for size, wanted in zip(sizes, struct.unpack_from('<3I', data, 108)):
+            parts.append(data[at:at + size])
+            at += size
+            if xxh32(parts[-1]) != wanted:
                 raise Bad('a checksum of the front')
+        details, base, table = parts
         self.draco, self.extras = base[:draco_bytes], base[draco_bytes:]
         self.place_weights, at = [], 1
         for k in range(3):
@@ -327,6 +341,8 @@ class File:
                 flat = struct.unpack_from('<42b', details, at)
                 at += 42
             self.place_weights.append([[flat[(r * 2 + row) * 3:][:3] for row in range(2)] for r in range(7)])
+        if details[0] >> 3 & 1:
+            at += 24  # what to add for the source's coordinates
         self.attributes = []
         at += 2
         for _ in range(struct.unpack_from('<H', details, at - 2)[0]):
@@ -340,7 +356,42 @@ class File:
             name = details[at + 2:at + 2 + length].decode()
             at += 2 + length
             self.attributes.append((name, semantic, components, coding, bits, grid))
-        self.blocks = [struct.unpack_from('<QIQ5If', table, 44 * i) for i in range(blocks)]
+        self.read_table(table, at_end=124 + len(details) + len(base) + len(table))
+
+    def read_table(self, table, at_end):
+        """Blocks: offset, bytes, checksum, then splits, vertices, triangles, corner changes and moves up to their
+        end, and the error."""
+        at = 0
+
+        def number():
+            nonlocal at
+            value = shift = 0
+            while True:
+                byte = table[at]
+                at += 1
+                value |= (byte & 127) << shift
+                shift += 7
+                if byte < 128:
+                    return value
+
+        def unzigzag(n):
+            return n >> 1 ^ -(n & 1)
+
+        totals = [0, self.base_vertices, self.base_triangles, 0, 0]
+        error = struct.unpack('<I', struct.pack('<f', self.base_error))[0]
+        self.blocks, self.bytes = [], at_end
+        while at < len(table):
+            size, splits = number(), number()
+            vertices = unzigzag(number()) + splits
+            triangles = unzigzag(number()) + 2 * vertices
+            grown = [splits, vertices, triangles, number(), number()]
+            totals = [total + more for total, more in zip(totals, grown)]
+            error -= number()
+            wanted = struct.unpack_from('<I', table, at)[0]
+            at += 4
+            self.blocks.append((self.bytes, size, wanted, *totals, struct.unpack('<f', struct.pack('<I', error))[0]))
+            self.bytes += size
+        self.splits, self.vertices, self.triangles, self.corners, self.moves = totals
 
 
 # ---- The base mesh
@@ -556,10 +607,10 @@ def rough_shift(scale, bent):
 class Places:
     def __init__(self, weights):
         self.weights = weights
-        self.first = [Residual(15, 6) for _ in range(3)]
-        self.second = [Residual(15, 6) for _ in range(3)]
-        self.third = [Residual(15, 4) for _ in range(3)]
-        self.free = Residual(1, 1)
+        self.first = [Residual(15, 6, prior) for prior in ALONG_PRIORS]
+        self.second = [Residual(15, 6, prior) for prior in ALONG_PRIORS]
+        self.third = [Residual(15, 4, prior) for prior in ACROSS_PRIORS]
+        self.free = Residual(1, 1, ALONG_PRIORS[0])
 
     def decode(self, coder, live, kind, parent, ring, open_ring, rough, child=None):
         origin = live.at[parent]
@@ -682,6 +733,60 @@ def restore(attribute, numbers):
 
 # ---- Sweeps and splits
 
+class Directions:
+    """Of one attribute: two numbers on an octahedron."""
+
+    def __init__(self, bits):
+        self.most = (1 << (bits - 1)) - 1
+        self.size = 16 * self.most
+        self.missed = [[0, 0] for _ in range(16)]
+        self.first = [Number() for _ in range(24)]
+        self.second = [[Number() for _ in range(24)] for _ in range(4)]
+
+    def direction(self, numbers):
+        x, y = (min(max(n, -self.most), self.most) for n in numbers)
+        z = self.most - abs(x) - abs(y)
+        return self.fold(x, y, self.most) + [z] if z < 0 else [x, y, z]
+
+    @staticmethod
+    def fold(x, y, size):
+        return [abs(y) - size if x < 0 else size - abs(y), abs(x) - size if y < 0 else size - abs(x)]
+
+    def sized(self, d):
+        whole = sum(map(abs, d))
+        if whole == 0:
+            return [0, 0, self.size]
+        over = max(0, whole.bit_length() - 40)
+        parts = [(abs(n) >> over) * self.size // max(whole >> over, 1) for n in d]
+        return [-part if n < 0 else part for part, n in zip(parts, d)]
+
+    def guess(self, geometric, mean):
+        self.guesses = [self.sized(geometric), self.sized(mean)]
+        apart = sum(abs(a - b) for a, b in zip(*self.guesses))
+        self.late = self.missed[min(half_octave(apart), 31) // 2]
+        g, m = (missed + 1 for missed in self.late)
+        share = 64 * m // (g + m)
+        x, y, z = self.sized([share * a + (64 - share) * b for a, b in zip(*self.guesses)])
+        if z < 0:
+            x, y = self.fold(x, y, self.size)
+        self.at = [(x + 8) >> 4, (y + 8) >> 4]
+        self.scale = min(half_octave(min(g, m)) // 2, 23)
+
+    def decode(self, coder):
+        first = self.first[self.scale].decode(coder)
+        second = self.second[min(first.bit_length(), 3)][self.scale].decode(coder)
+        n = [signed(self.at[0] + unzigzag(first) & M32), signed(self.at[1] + unzigzag(second) & M32)]
+        for i in range(2):
+            if abs(n[i]) > self.most:
+                n[i] = signed((-2 if n[i] < 0 else 2) * self.most - n[i] & M32)
+                n[1 - i] = signed(-n[1 - i] & M32)
+        now = self.direction(n)
+        for k in range(2):
+            off = sum(abs(16 * a - b) for a, b in zip(now, self.guesses[k]))
+            self.late[k] += (off * off - self.late[k]) >> 5
+        return n
+
+
 class Decoder:
     def __init__(self, file):
         self.file, self.live = file, Live()
@@ -714,6 +819,11 @@ class Decoder:
         self.parent_kind, self.corner_kind = Symbol(2), Symbol(2)
         self.finer_numbers = [Number() for _ in range(3)]
         self.value_numbers = [[Number() for _ in range(14)] for _ in self.mixes]
+        self.directions, at = {}, 0  # by their first number's place
+        for attribute in file.attributes:
+            if attribute[3] == 4:
+                self.directions[at] = Directions(attribute[4])
+            at += numbers_of(attribute)
         self.last_place, self.last_group = [0, 0, 0], 0
 
         # The progressive mesh.
@@ -747,15 +857,19 @@ class Decoder:
         coder.end()
         self.live.link_twins(0)
 
-    def decode_block(self, data, splits_end):
+    def decode_block(self, data, splits_end, error_before):
         coder = Coder(data)
+        begin = len(self.splits)
         while len(self.splits) < splits_end:
             if self.marked_left == 0 and self.unmarked_left == 0:
                 self.kind = self.kinds.decode(coder)
                 if self.kind == 3:
                     raise Bad('a sweep is of no known kind')
                 self.marked_left, self.unmarked_left = self.marked.decode(coder), self.unmarked.decode(coder)
-                self.error_bits -= self.error.decode(coder)
+                if len(self.splits) == begin:
+                    self.error_bits = struct.unpack('<I', struct.pack('<f', error_before))[0]
+                else:
+                    self.error_bits -= self.error.decode(coder)
                 alive = len(self.live.at)
                 self.sweep += 1
                 self.older = alive
@@ -817,9 +931,16 @@ class Decoder:
     def decode_finer(self, coder):
         return [n.decode(coder) for n in self.finer_numbers] if self.file.lossless else [0, 0, 0]
 
-    def decode_values(self, coder, predicted, scales):
-        return [signed((p + unzigzag(models[s].decode(coder))) & M32)
-                for p, s, models in zip(predicted, scales, self.value_numbers)]
+    def decode_values(self, coder, predicted, scales, guessed=False):
+        values = []
+        while len(values) < len(predicted):
+            i = len(values)
+            if guessed and i in self.directions:
+                values += self.directions[i].decode(coder)
+            else:
+                read = self.value_numbers[i][scales[i]].decode(coder)
+                values.append(signed((predicted[i] + unzigzag(read)) & M32))
+        return values
 
     def decode_group(self, coder, predicted):
         if not coder.bit(self.group_stays):
@@ -866,8 +987,9 @@ class Decoder:
                     place = self.places.decode_free(coder, live.at[parent] if parent != NONE else self.last_place)
                 finer = self.decode_finer(coder)
             self.last_place = place
-            births.append((parent, place, finer,
-                           self.decode_values(coder, *self.predict_values(parent, child_ring if run else None, births))))
+            predicted = self.predict_values(parent, child_ring if run else None, births)
+            guessed = run is not None and self.guess_directions(parent, place, child_ring, run)
+            births.append((parent, place, finer, self.decode_values(coder, *predicted, guessed)))
             if moving:
                 guide = (parent_ring, not star.closed, place) if run else None
                 self.decode_move(coder, parent, guide, moves)
@@ -906,7 +1028,8 @@ class Decoder:
         place = self.places.decode(coder, self.live, 1 if moving else 0, parent, child_ring, not (run[2] and run[3]), rough)
         finer = self.decode_finer(coder)
         self.last_place = place
-        values = self.decode_values(coder, *self.predict_values(parent, child_ring, []))
+        values = self.decode_values(coder, *self.predict_values(parent, child_ring, []),
+                                    self.guess_directions(parent, place, child_ring, run))
         if moving:
             self.decode_move(coder, parent, (parent_ring, not star.closed, place), moves)
         groups = [self.decode_group(coder, group) for _, group in implied] if self.group_bits else []
@@ -957,6 +1080,19 @@ class Decoder:
             spread = mean16(sum(map(abs, offsets)), len(ring) + 1)
             scales.append(min((half_octave(spread) + 1) // 2 + 1, 13))
         return predicted, scales
+
+    def guess_directions(self, parent, place, ring, run):
+        to = [[a - b for a, b in zip(self.live.at[v], place)] for v in ring]
+        p = [a - b for a, b in zip(self.live.at[parent], place)]
+        row = ([p] if run[2] else []) + to + ([p] if run[3] else [])
+        geometric = [0, 0, 0]
+        for a, b in zip(row, row[1:]):
+            geometric = [geometric[k] + a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3]
+                         for k in range(3)]
+        for at, model in self.directions.items():
+            near = [model.direction(self.values[v][at:at + 2]) for v in [parent] + ring]
+            model.guess(geometric, [sum(d[k] for d in near) for k in range(3)])
+        return True
 
     def decode_move(self, coder, vertex, guide, moves):
         guided = guide is not None
@@ -1079,11 +1215,13 @@ def main():
     file = File(data)
     decoder = Decoder(file)
     print(decoder.digest())
-    for offset, size, checksum, splits, *_ in file.blocks:
+    error_before = file.base_error
+    for offset, size, checksum, splits, *_, error in file.blocks:
         block = data[offset:offset + size]
-        if xxh64(block) != checksum:
+        if xxh32(block) != checksum:
             raise Bad("a block's checksum")
-        decoder.decode_block(block, splits)
+        decoder.decode_block(block, splits, error_before)
+        error_before = error
         print(decoder.digest())
 
 

@@ -10,6 +10,12 @@
 #include "layout.hpp"
 
 namespace vsplit {
+namespace {
+
+/// Behind the weights of all kinds there is an origin that is not zero.
+constexpr std::uint8_t kHasOrigin = 1u << kPlaceKinds;
+
+}  // namespace
 
 std::vector<std::byte> encode_details(const Details& details) {
     ByteWriter out;
@@ -17,9 +23,12 @@ std::vector<std::byte> encode_details(const Details& details) {
     std::uint8_t kinds = 0;
     for (std::size_t kind = 0; kind < kPlaceKinds; ++kind)
         if (details.weights[kind] != defaults[kind]) kinds = static_cast<std::uint8_t>(kinds | 1u << kind);
+    const bool has_origin = details.origin != std::array<double, 3>{};
+    if (has_origin) kinds = static_cast<std::uint8_t>(kinds | kHasOrigin);
     out.put(kinds);
     for (std::size_t kind = 0; kind < kPlaceKinds; ++kind)
         if (kinds >> kind & 1) out.put(details.weights[kind]);
+    if (has_origin) out.put(details.origin);
     out.put(static_cast<std::uint16_t>(details.rules.size()));
     for (const ValueRule& rule : details.rules) {
         out.put(static_cast<std::uint8_t>(rule.semantic));
@@ -51,8 +60,8 @@ std::optional<Details> decode_details(std::span<const std::byte> bytes, const ch
     std::uint8_t kinds = 0;
     if (!has(1)) return std::nullopt;
     take(kinds);
-    if (kinds >> kPlaceKinds) {
-        fault = "the details have weights of an unknown kind";
+    if (kinds & ~(2 * kHasOrigin - 1)) {
+        fault = "the details have parts of an unknown kind";
         return std::nullopt;
     }
     details.weights = default_place_weights();
@@ -60,6 +69,17 @@ std::optional<Details> decode_details(std::span<const std::byte> bytes, const ch
         if (!(kinds >> kind & 1)) continue;
         if (!has(sizeof(details.weights[kind]))) return std::nullopt;
         take(details.weights[kind]);
+    }
+    if (kinds & kHasOrigin) {
+        const std::size_t start = at;
+        if (!has(sizeof(details.origin))) return std::nullopt;
+        take(details.origin);
+        for (const double value : details.origin)
+            if (!std::isfinite(value)) {
+                fault = "the origin is not finite";
+                at = start;
+                return std::nullopt;
+            }
     }
     if (!has(2)) return std::nullopt;
     take(count);
@@ -108,6 +128,15 @@ std::optional<Details> decode_details(std::span<const std::byte> bytes, const ch
         fault = "the details are longer than they need";
         return std::nullopt;
     }
+    // Readers that stream have no other occasion to say so.
+    std::vector<Attribute> named;
+    for (const ValueRule& rule : details.rules)
+        named.push_back({rule.name, rule.semantic, rule.components, {}});
+    if (const char* wrong = attributes_fault(named, 0)) {
+        fault = wrong;
+        at = 0;
+        return std::nullopt;
+    }
     return details;
 }
 
@@ -116,8 +145,14 @@ StreamShape shape_of(const Details& details, bool weights, bool lossless, std::u
     shape.lossless = lossless;
     shape.group_bits = static_cast<std::uint32_t>(std::bit_width(largest_group));
     for (const ValueRule& rule : details.rules)
-        for (std::uint32_t i = 0; i < rule.numbers(); ++i) shape.mixes.push_back(rule.mixes(i));
-    if (weights) shape.mixes.push_back(false);
+        for (std::uint32_t i = 0; i < rule.numbers(); ++i) {
+            shape.mixes.push_back(rule.mixes(i));
+            shape.direction_bits.push_back(rule.coding == ValueCoding::kOctahedral && i == 0 ? rule.bits : 0);
+        }
+    if (weights) {
+        shape.mixes.push_back(false);
+        shape.direction_bits.push_back(0);
+    }
     return shape;
 }
 

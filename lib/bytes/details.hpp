@@ -4,6 +4,7 @@
 // The part between header and base mesh: what the stream was coded with.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -17,6 +18,7 @@ namespace vsplit {
 
 struct Details {
     PlaceWeights weights{};
+    std::array<double, 3> origin{};  ///< As ProgressiveMesh::origin; finite.
     std::vector<ValueRule> rules;
 };
 

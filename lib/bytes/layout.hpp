@@ -21,11 +21,13 @@ namespace vsplit {
 inline constexpr std::array<unsigned char, 8> kMagic = {0x8F, 'p', 'm', 'e', 's', 'h', '\r', '\n'};
 inline constexpr std::uint32_t kVersion = 1;
 inline constexpr std::uint32_t kFlagWeights = 1, kFlagLossless = 2;
-inline constexpr std::size_t kHeaderBytes = 208;
-inline constexpr std::size_t kTableEntryBytes = 44;
-inline constexpr std::size_t kTableChecksumAt = 104;
-inline constexpr std::size_t kDetailsChecksumAt = 168;
-inline constexpr std::size_t kHeaderChecksumAt = 200;
+inline constexpr std::size_t kHeaderBytes = 124;
+// In the header.
+inline constexpr std::size_t kVersionAt = 8, kFlagsAt = 12, kBaseVerticesAt = 16, kBaseTrianglesAt = 20,
+                             kBoundsAt = 24, kDetailsBytesAt = 48, kBaseBytesAt = 52, kDracoBytesAt = 56,
+                             kTableBytesAt = 60, kBaseErrorAt = 64, kLargestGroupAt = 68,
+                             kPositionBitsAt = 72, kLatticeAt = 76, kDetailsChecksumAt = 108,
+                             kBaseChecksumAt = 112, kTableChecksumAt = 116, kHeaderChecksumAt = 120;
 /// A block holds at most so many births, triangles, corner changes, moves and splits a byte of it.
 inline constexpr std::uint64_t kPartsPerByte = 256;
 inline constexpr std::uint32_t kMostPositionBits = 20;

@@ -42,6 +42,24 @@ struct NumberModel {
     }
 };
 
+/// How likely a difference has d digits, in 1/4096, where 2 d departs from its scale (in half octaves) by i -
+/// 12, measured over many meshes, so that small files need not learn it.
+using DigitPrior = std::array<std::uint16_t, 16>;
+/// Along the surface and across it, of each PlaceKind.
+inline constexpr std::array<DigitPrior, 3> kAlongPriors = {{
+    {442, 553, 702, 842, 1003, 1215, 1157, 863, 383, 117, 13, 4, 2, 1, 1, 1},
+    {465, 631, 833, 1095, 1310, 1356, 985, 522, 158, 30, 5, 2, 1, 1, 1, 1},
+    {654, 850, 1037, 1228, 1198, 1054, 655, 297, 67, 10, 3, 2, 1, 1, 1, 1},
+}};
+inline constexpr std::array<DigitPrior, 3> kAcrossPriors = {{
+    {533, 652, 760, 973, 998, 1075, 911, 675, 374, 166, 74, 32, 16, 11, 6, 4},
+    {770, 959, 1038, 1120, 953, 791, 484, 242, 111, 55, 36, 20, 12, 6, 4, 2},
+    {1397, 1347, 872, 665, 229, 132, 44, 15, 5, 3, 2, 1, 1, 1, 1, 1},
+}};
+/// And that its second digit, or its third, is 1, in percent, from a departure of 14 - 24 on.
+inline constexpr std::array<std::array<std::uint8_t, 2>, 10> kSecondPrior = {
+    {{46, 49}, {46, 48}, {45, 48}, {41, 46}, {33, 42}, {25, 36}, {16, 30}, {13, 28}, {20, 35}, {26, 37}}};
+
 /// Signed differences whose size is expected to be about `scale`, 0 to 55 in half octaves: one set of digit
 /// counts a scale below `Rows`, the first digits by how the count departs from the scale. Greater scales
 /// leave so many digits aside that one of the last two rows tells the others.
@@ -52,8 +70,7 @@ struct ResidualModel {
     std::array<std::array<BitModel, 3>, 64> second;
     std::array<BitModel, kNoSide> sign;
 
-    /// Digit counts that a prior of `rising` expects at each scale: see digit_prior().
-    ResidualModel();
+    explicit ResidualModel(const DigitPrior& prior = kAlongPriors[0]);
 
     /// `side`: what tells the sign, 0 to 63; kNoSide: nothing does.
     template <class Coder>
@@ -88,38 +105,29 @@ struct ResidualModel {
     }
 };
 
-/// How likely a difference has d digits, in 1/65536, where 2 d departs from its scale (in half octaves) by i
-/// - 24: measured over the first meshes of the benchmark, so that small files need not learn it.
-inline constexpr std::array<std::uint16_t, 49> kDigitPrior = {
-    40,  40,   40,   40,   40,   40,   40,   40,    40,    60,    80,    120,   170,   240,  340,  480,  680,
-    960, 1360, 1920, 2700, 3900, 5500, 7800, 11000, 14000, 16500, 17500, 16500, 12500, 7600, 3500, 1300, 500,
-    250, 150,  100,  60,   40,   40,   40,   40,    40,    40,    40,    40,    40,    40,   40};
-
 template <std::size_t Rows, std::size_t Kinds>
-ResidualModel<Rows, Kinds>::ResidualModel() {
-    static_assert(Rows <= 24);
-    for (std::size_t scale = 0; scale < Rows; ++scale) {
+ResidualModel<Rows, Kinds>::ResidualModel(const DigitPrior& prior) {
+    static_assert(Rows <= 15);
+    constexpr std::uint32_t kSeen = 6;
+    for (std::size_t row = 0; row < Rows; ++row) {
         std::array<std::uint32_t, 64> weight{};  // of the nodes; leaf d at 32 + d
-        for (std::size_t d = 0; d < 32; ++d) {
-            const std::int64_t at = 2 * std::int64_t(d) - std::int64_t(scale) + 24;
-            weight[32 + d] = d > 26 ? 1
-                                    : kDigitPrior[static_cast<std::size_t>(at < 0    ? 0
-                                                                           : at > 48 ? 48
-                                                                                     : at)];
+        for (std::size_t d = 1; d < 32; ++d) {
+            const std::size_t at = 2 * d + 12 - row;
+            weight[32 + d] = at < prior.size() ? prior[at] : 1;
         }
         // A difference of no digits stands for all that would be smaller still.
-        for (std::size_t at = 24 - scale; at >= 2;) weight[32] += kDigitPrior[at -= 2];
+        weight[32] = prior[row & 1];
+        for (std::size_t at = 14 - row; at >= 2;) weight[32] += prior[at -= 2];
         for (std::size_t node = 32; node-- > 1;) weight[node] = weight[2 * node] + weight[2 * node + 1];
         for (std::size_t kind = 0; kind < Kinds; ++kind)
-            for (std::size_t node = 1; node < 32; ++node) {
-                const std::uint32_t one =
-                    static_cast<std::uint32_t>(std::uint64_t{weight[2 * node + 1]} * 65536 / weight[node]);
-                digits[scale * Kinds + kind].nodes[node] = BitModel(one < 64      ? 64
-                                                                    : one > 65472 ? 65472
-                                                                                  : one,
-                                                                    4);
-            }
+            for (std::size_t node = 1; node < 32; ++node)
+                digits[row * Kinds + kind].nodes[node] =
+                    BitModel(std::clamp(weight[2 * node + 1] * 65536 / weight[node], 64u, 65472u), kSeen);
     }
+    for (std::size_t i = 0; i < second.size(); ++i)
+        for (std::size_t j = 0; j < 3; ++j)
+            second[i][j] =
+                BitModel(kSecondPrior[std::min<std::size_t>(i < 14 ? 0 : i - 14, 9)][j > 0] * 655u, kSeen);
 }
 
 }  // namespace vsplit

@@ -78,9 +78,12 @@ class PlaceModel {
     void measure(const Around& around, std::uint32_t count, PlaceGuides& guides) const;
 
     PlaceWeights weights_;
-    ResidualModel<kScaleRows, 6> first_[kPlaceKinds];
-    ResidualModel<kScaleRows, 6> second_[kPlaceKinds];
-    ResidualModel<kScaleRows, 4> third_[kPlaceKinds];
+    using Along = ResidualModel<kScaleRows, 6>;
+    using Across = ResidualModel<kScaleRows, 4>;
+    Along first_[kPlaceKinds] = {Along(kAlongPriors[0]), Along(kAlongPriors[1]), Along(kAlongPriors[2])};
+    Along second_[kPlaceKinds] = {Along(kAlongPriors[0]), Along(kAlongPriors[1]), Along(kAlongPriors[2])};
+    Across third_[kPlaceKinds] = {Across(kAcrossPriors[0]), Across(kAcrossPriors[1]),
+                                  Across(kAcrossPriors[2])};
     ResidualModel<1> free_;
 };
 

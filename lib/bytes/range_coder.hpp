@@ -23,7 +23,7 @@
 namespace vsplit {
 
 /// The rate at which a model that has seen n bits learns from the next: about 1 / (n + 1.5), in 1/65536.
-inline constexpr std::uint32_t kFastestRates = 128;
+inline constexpr std::uint32_t kFastestRates = 64;
 inline constexpr std::array<std::uint16_t, kFastestRates> kLearningRates = [] {
     std::array<std::uint16_t, kFastestRates> rates{};
     for (std::uint32_t n = 0; n < kFastestRates; ++n)
@@ -54,6 +54,9 @@ class BitModel {
     static constexpr std::uint32_t kLeast = 24;
     std::uint16_t one_ = 32768, seen_ = 0;
 };
+
+/// So many zeros may be missing at the end of a stream.
+inline constexpr std::size_t kStreamTail = 4;
 
 class RangeEncoder {
   public:
@@ -94,10 +97,13 @@ class RangeEncoder {
         normalise();
     }
 
-    /// Ends the stream and gives its bytes away; the encoder begins another.
+    /// Ends the stream and gives its bytes away; the encoder begins another. Of the numbers that would do,
+    /// the one that ends with the most zeros is written, and zeros are left to the decoder.
     std::vector<std::byte> finish() {
+        low_ = (low_ + 0xFFFFFFu) & ~std::uint64_t{0xFFFFFFu};
         for (int i = 0; i < 5; ++i) shift();
         std::vector<std::byte> out = std::move(bytes_);
+        for (std::size_t i = 0; i < kStreamTail && out.back() == std::byte{0}; ++i) out.pop_back();
         *this = {};
         return out;
     }
@@ -151,7 +157,7 @@ struct NoCoder {
     bool overrun() const { return false; }
 };
 
-/// Safe for any bytes: behind their end follow zeros, and overrun() says so.
+/// Safe for any bytes: behind their end follow zeros, and overrun() says when they are too many.
 class RangeDecoder {
   public:
     static constexpr bool kDecodes = true, kWrites = false;
@@ -199,9 +205,9 @@ class RangeDecoder {
         normalise();
     }
 
-    /// Bytes taken so far; more than there are if the stream is too short.
+    /// Bytes taken so far, zeros behind the end among them.
     std::size_t taken() const { return taken_; }
-    bool overrun() const { return taken_ > bytes_.size(); }
+    bool overrun() const { return taken_ > bytes_.size() + kStreamTail; }
 
   private:
     VSPLIT_INLINE std::uint32_t raw_few(std::uint32_t count) {

@@ -9,6 +9,7 @@
 #include "checksum.hpp"
 #include "details.hpp"
 #include "layout.hpp"
+#include "table.hpp"
 
 namespace vsplit {
 namespace {
@@ -67,16 +68,21 @@ const char* BlockDecoder::State::begin_base(BaseMesh base, std::span<const std::
     RangeDecoder coder(extras);
     codec.code_base(coder);
     if (coder.overrun()) return "the base mesh's stream ends too early";
-    if (!only_zeros(extras.subspan(coder.taken()))) return "the base mesh's stream is longer than it needs";
+    if (!only_zeros(extras.subspan(std::min(coder.taken(), extras.size()))))
+        return "the base mesh's stream is longer than it needs";
     output.add_base(codec);
     return output.sound() ? nullptr : kUnsoundValue;
 }
 
 const char* BlockDecoder::State::decode_splits(std::span<const std::byte> stored, const BlockInfo& block) {
+    const std::size_t begin = mesh.splits.size();
+    const float before = blocks == 0 ? info.base_error : info.blocks[blocks - 1].error;
     RangeDecoder coder(stored);
     while (mesh.splits.size() < block.splits_end) {
         if (marked_left == 0 && unmarked_left == 0) {
             SweepHead head;
+            head.begins_block = mesh.splits.size() == begin;
+            head.error_bits = std::bit_cast<std::uint32_t>(before);
             if (const char* fault = codec.code_head(coder, head)) return fault;
             marked_left = head.marked;
             unmarked_left = head.unmarked;
@@ -122,7 +128,7 @@ Result<BlockDecoder> BlockDecoder::begin(std::span<const std::byte> front, const
     if (!read) return read.error();
     const FileInfo& info = *read;
     const auto base_bytes = front.subspan(info.base_offset, info.base_bytes);
-    if (checksum64(base_bytes) != info.base_checksum)
+    if (checksum32(base_bytes) != info.base_checksum)
         return at(info.base_offset, ErrorCode::kChecksum, "the base mesh's checksum does not match");
     auto base = decode_base(base_bytes.first(info.base_draco_bytes), info.base_vertices, info.base_triangles,
                             decode_base_mesh);
@@ -163,7 +169,7 @@ Status BlockDecoder::decode(std::span<const std::byte> stored) {
     };
     if (stored.size() != block.bytes)
         return in_block(ErrorCode::kArgument, "it has " + std::to_string(block.bytes) + " bytes");
-    if (checksum64(stored) != block.checksum)
+    if (checksum32(stored) != block.checksum)
         return in_block(ErrorCode::kChecksum, "its checksum does not match");
     if (const char* fault = s.decode_splits(stored, block)) {
         s.broken = true;
@@ -192,20 +198,21 @@ Result<BlockDecoder> decode_prefix(std::span<const std::byte> bytes, const Limit
 /// where.
 const char* announcement_fault(const FileInfo& info, const ProgressiveMesh& mesh, std::size_t blocks,
                                std::uint64_t& offset) {
-    offset = 92;
+    offset = kBaseErrorAt;
     const bool whole = blocks == info.blocks.size();
     if ((whole || !mesh.splits.empty()) && double(info.base_error) != error_at(mesh, 0))
         return "the base mesh has another error than the header announces";
     for (std::size_t i = 0; i < blocks; ++i) {
-        offset = info.table_offset + kTableEntryBytes * i + 40;
         if ((whole || i + 1 < blocks) &&
-            double(info.blocks[i].error) != error_at(mesh, info.blocks[i].splits_end))
+            double(info.blocks[i].error) != error_at(mesh, info.blocks[i].splits_end)) {
+            offset = table_entry_at(info, i);
             return "a block ends at another error than the table announces";
+        }
     }
     if (!whole) return nullptr;
     std::vector<Float3> places(mesh.positions);
     for (const VertexMove& move : mesh.moves) places[move.vertex] = move.position;
-    offset = 56;
+    offset = kBoundsAt;
     const Bounds bounds = bounds_of(places);
     if (bounds.low != info.bounds_min || bounds.high != info.bounds_max)
         return "the mesh has other bounds than the header announces";

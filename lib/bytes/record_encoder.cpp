@@ -274,13 +274,14 @@ void RecordEncoder::fetch(const Sweep& sweep, std::size_t step) const {
 
 template <class Coder>
 void RecordEncoder::code_splits(Coder& coder,
-                                const std::function<void(const SplitPlan&, float, bool)>& done) {
+                                const std::function<bool(const SplitPlan&, float, bool)>& done) {
+    bool block_ends = true;
     for (const Sweep& sweep : sweeps_) {
         const auto marked = std::count_if(sweep.steps.begin(), sweep.steps.end(),
                                           [](const Sweep::Step& step) { return step.primary != kNoVertex; });
         SweepHead head{sweep.kind, static_cast<std::uint32_t>(marked),
                        static_cast<std::uint32_t>(sweep.steps.size()) - static_cast<std::uint32_t>(marked),
-                       std::bit_cast<std::uint32_t>(sweep.error)};
+                       block_ends, std::bit_cast<std::uint32_t>(sweep.error)};
         const char* fault = codec_.code_head(coder, head);
         for (std::size_t i = 0; i < sweep.steps.size(); ++i) {
             const Sweep::Step& step = sweep.steps[i];
@@ -292,7 +293,7 @@ void RecordEncoder::code_splits(Coder& coder,
             if (!fault) fault = codec_.code_split(coder, primary, wanted_, coded_);
             codec_.apply(coded_);
             learn_numbers(wanted_, coded_);
-            done(coded_, sweep.error, &step == &sweep.steps.back());
+            block_ends = done(coded_, std::bit_cast<float>(head.error_bits), &step == &sweep.steps.back());
         }
         assert(!fault);
         static_cast<void>(fault);
@@ -302,7 +303,7 @@ void RecordEncoder::code_splits(Coder& coder,
 template void RecordEncoder::code_base(RangeEncoder&);
 template void RecordEncoder::code_base(NoCoder&);
 template void RecordEncoder::code_splits(RangeEncoder&,
-                                         const std::function<void(const SplitPlan&, float, bool)>&);
-template void RecordEncoder::code_splits(NoCoder&, const std::function<void(const SplitPlan&, float, bool)>&);
+                                         const std::function<bool(const SplitPlan&, float, bool)>&);
+template void RecordEncoder::code_splits(NoCoder&, const std::function<bool(const SplitPlan&, float, bool)>&);
 
 }  // namespace vsplit

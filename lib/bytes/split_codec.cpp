@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <limits>
 
 #include "place_fit.hpp"
 
@@ -24,8 +25,16 @@ SplitCodec::SplitCodec(const StreamShape& shape, const PlaceWeights& weights)
       place_(weights),
       error_bits_(std::bit_cast<std::uint32_t>(std::numeric_limits<float>::max())) {
     value_.resize(shape.stride());
+    for (const std::uint32_t bits : shape.direction_bits)
+        if (bits > 0) normal_.emplace_back(bits);
     predicted_.resize(shape.stride());
     scales_.resize(shape.stride());
+}
+
+std::uint64_t SplitCodec::model_bytes(const StreamShape& shape) {
+    const auto directions = std::count_if(shape.direction_bits.begin(), shape.direction_bits.end(),
+                                          [](auto bits) { return bits > 0; });
+    return shape.stride() * sizeof(ValueModel) + static_cast<std::uint64_t>(directions) * sizeof(NormalModel);
 }
 
 // ---- Sweeps
@@ -37,9 +46,14 @@ const char* SplitCodec::code_head(Coder& coder, SweepHead& head) {
     head.kind = kind_ = static_cast<SweepKind>(kind);
     head.marked = marked_.code(coder, head.marked);
     head.unmarked = unmarked_.code(coder, head.unmarked);
-    const std::uint32_t fall = error_.code(coder, error_bits_ - head.error_bits);
-    if (fall > error_bits_) return "a sweep's error is negative";
-    head.error_bits = error_bits_ -= fall;
+    if (head.begins_block) {
+        if (head.error_bits > error_bits_) return "a sweep's error grows";
+        error_bits_ = head.error_bits;
+    } else {
+        const std::uint32_t fall = error_.code(coder, error_bits_ - head.error_bits);
+        if (fall > error_bits_) return "a sweep's error is negative";
+        head.error_bits = error_bits_ -= fall;
+    }
     const std::uint32_t alive = live.vertex_count();
     if (head.marked == 0 && head.unmarked == 0) return "a sweep is empty";
     ++sweep_;

@@ -14,6 +14,7 @@
 #include "ask_list.hpp"
 #include "cut_model.hpp"
 #include "live_stars.hpp"
+#include "normal_model.hpp"
 #include "number_models.hpp"
 #include "place_model.hpp"
 #include "schedule.hpp"
@@ -60,8 +61,9 @@ inline bool is_rotation(const Triangle& a, const Triangle& b) {
 /// What of a mesh the stream holds.
 struct StreamShape {
     bool lossless = false;
-    std::uint32_t group_bits = 0;  ///< Digits of the largest group; 0: no groups.
-    std::vector<bool> mixes;       ///< Per number of a vertex beside its place: may neighbours be averaged?
+    std::uint32_t group_bits = 0;               ///< Digits of the largest group; 0: no groups.
+    std::vector<std::uint32_t> direction_bits;  ///< Per number: of the direction that begins with it, else 0.
+    std::vector<bool> mixes;  ///< Per number of a vertex beside its place: may neighbours be averaged?
     std::size_t stride() const { return mixes.size(); }
 };
 
@@ -71,6 +73,9 @@ struct SweepHead {
     SweepKind kind = SweepKind::kRounds;
     std::uint32_t marked = 0;    ///< Splits found by their first parent, in its order.
     std::uint32_t unmarked = 0;  ///< Splits without parents, after them.
+    /// Whether no split of its block precedes it: then the table has told the error, and the decoder too
+    /// gives it.
+    bool begins_block = false;
     std::uint32_t error_bits = 0;
 };
 
@@ -112,6 +117,8 @@ class SplitCodec {
     void apply(const SplitPlan& plan);
 
     const StreamShape& shape() const { return shape_; }
+    /// Bytes that the models of a vertex's numbers take.
+    static std::uint64_t model_bytes(const StreamShape& shape);
 
   private:
     static constexpr std::size_t kValueScales = 14;
@@ -194,6 +201,8 @@ class SplitCodec {
     void code_implied(Coder& coder, const SplitPlan& wanted, SplitPlan& out);
     /// Of a batch: what a split has changed.
     void count_locked(std::uint32_t first);
+    /// Guesses of the directions of a child whose corners were a run.
+    void guess_directions(std::uint32_t parent, const Lattice3& child);
     void predict_values(std::uint32_t parent, const SplitPlan& out);
     std::uint32_t birth_id(std::size_t index) const {
         return live.vertex_count() + static_cast<std::uint32_t>(index);
@@ -229,6 +238,8 @@ class SplitCodec {
     SymbolModel<2> parent_kind_, corner_kind_;
     std::array<NumberModel, 3> finer_;
     std::vector<ValueModel> value_;
+    std::vector<NormalModel> normal_;  ///< One for each direction.
+    bool guesses_ = false;             ///< At the birth at hand: are directions guessed?
 
     // The birth at hand.
     Star star_;

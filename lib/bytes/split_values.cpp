@@ -63,8 +63,11 @@ void SplitCodec::code_birth_place(Coder& coder, const SplitPlan& wanted, std::si
     last_place_ = birth.at;
     if (shape_.stride() > 0) {
         predict_values(birth.parent, out);
+        guesses_ = is_run_ && has_parent && !normal_.empty();
+        if (guesses_ && (Coder::kWrites || Coder::kDecodes)) guess_directions(birth.parent, birth.at);
         code_values(coder, Coder::kDecodes ? nullptr : wanted.birth_values.data() + index * shape_.stride(),
                     out.birth_values);
+        guesses_ = false;
     }
 }
 
@@ -309,9 +312,52 @@ void SplitCodec::predict_values(std::uint32_t parent, const SplitPlan& out) {
     }
 }
 
+void SplitCodec::guess_directions(std::uint32_t parent, const Lattice3& child) {
+    const std::size_t stride = shape_.stride();
+    // The triangles around the child: between neighbours of the ring, and the wings.
+    Direction geometric{};
+    const auto to = [&](std::uint32_t v) {
+        const Lattice3& at = live.vertices[v].at;
+        return Direction{at[0] - child[0], at[1] - child[1], at[2] - child[2]};
+    };
+    const auto add = [&](const Direction& a, const Direction& b) {
+        geometric[0] += a[1] * b[2] - a[2] * b[1];
+        geometric[1] += a[2] * b[0] - a[0] * b[2];
+        geometric[2] += a[0] * b[1] - a[1] * b[0];
+    };
+    const Direction p = to(parent);
+    Direction before{};
+    for (std::uint32_t i = 0; i < child_ring_.size; ++i) {
+        const Direction here = to(child_ring_.vertex[i]);
+        if (i > 0) add(before, here);
+        if (i == 0 && run_.first_wing) add(p, here);
+        before = here;
+    }
+    if (child_ring_.size > 0 && run_.last_wing) add(before, p);
+    std::size_t direction = 0;
+    for (std::size_t i = 0; i < stride; ++i) {
+        if (shape_.direction_bits[i] == 0) continue;
+        NormalModel& model = normal_[direction++];
+        Direction mean = model.direction(values.data() + parent * stride + i);
+        for (std::uint32_t j = 0; j < child_ring_.size; ++j) {
+            const Direction near = model.direction(values.data() + child_ring_.vertex[j] * stride + i);
+            for (std::size_t k = 0; k < 3; ++k) mean[k] += near[k];
+        }
+        model.guess(geometric, mean);
+    }
+}
+
 template <class Coder>
 void SplitCodec::code_values(Coder& coder, const std::int32_t* wanted, std::vector<std::int32_t>& out) {
+    std::size_t direction = 0;
     for (std::size_t i = 0; i < shape_.stride(); ++i) {
+        if (guesses_ && (Coder::kWrites || Coder::kDecodes) && shape_.direction_bits[i] > 0) {
+            std::int32_t numbers[2];
+            normal_[direction++].code(coder, Coder::kDecodes ? nullptr : wanted + i, numbers);
+            out.insert(out.end(), numbers, numbers + 2);
+            ++i;
+            continue;
+        }
         const auto from = static_cast<std::uint32_t>(predicted_[i]);
         const std::uint32_t difference =
             Coder::kDecodes ? 0 : zigzag(static_cast<std::uint32_t>(wanted[i]) - from);

@@ -10,6 +10,7 @@
 #include "layout.hpp"
 #include "place_fit.hpp"
 #include "record_encoder.hpp"
+#include "table.hpp"
 
 namespace vsplit {
 namespace {
@@ -19,7 +20,8 @@ constexpr std::uint32_t kLosslessLatticeBits = 18;
 constexpr std::size_t kFitted = 1 << 16;
 
 /// Blocks of fewer bytes would pay more for their place in the table.
-constexpr std::size_t kLeastBlock = 1024;
+constexpr std::size_t kLeastBlock = 512;
+constexpr std::size_t kUsualEntryBytes = 17;
 
 /// Where a sweep ends the error falls: a block of this share of what it may hold ends there too.
 constexpr double kEnoughBlock = 0.7;
@@ -30,7 +32,6 @@ Error cannot(std::string message) {
 
 struct Block {
     std::vector<std::byte> stored;
-    std::uint64_t checksum = 0;
     Split end;
 };
 
@@ -74,6 +75,7 @@ Result<Encoded> encode(const ProgressiveMesh& mesh, const WriteOptions& options)
             options);
     }
     WholeNumbers& numbers = out.numbers;
+    numbers.details.origin = mesh.origin;
     std::vector<Sweep> sweeps = schedule(mesh, numbers.traded);
     const auto may_be_rough = [](double tolerance) { return tolerance > 0; };
     if (std::any_of(numbers.birth_tolerance.begin(), numbers.birth_tolerance.end(), may_be_rough) ||
@@ -91,7 +93,7 @@ Result<Encoded> encode(const ProgressiveMesh& mesh, const WriteOptions& options)
         first.codec().fit = &fit;
         first.codec().fit_every = static_cast<std::uint32_t>(mesh.splits.size() / kFitted + 1);
         first.code_base(look);
-        first.code_splits(look, [](const SplitPlan&, float, bool) {});
+        first.code_splits(look, [](const SplitPlan&, float, bool) { return false; });
     }
     numbers.details.weights = fit.solve();
 
@@ -108,6 +110,9 @@ Result<Encoded> encode(const ProgressiveMesh& mesh, const WriteOptions& options)
     encoder.code_base(coder);
     const std::vector<std::byte> extras = coder.finish();
     out.base.insert(out.base.end(), extras.begin(), extras.end());
+    const std::size_t base_parts = std::max(mesh.base_vertices, mesh.base_triangles);
+    if (out.base.size() * kPartsPerByte < base_parts)
+        out.base.resize((base_parts + kPartsPerByte - 1) / kPartsPerByte);
     output.add_base(encoder.codec());
 
     // Blocks start small, so that the first bytes already refine, and grow with what precedes them.
@@ -130,8 +135,7 @@ Result<Encoded> encode(const ProgressiveMesh& mesh, const WriteOptions& options)
             (block.end.moves_end - before.moves_end);
         if (block.stored.size() * kPartsPerByte < parts)
             block.stored.resize((parts + kPartsPerByte - 1) / kPartsPerByte);
-        block.checksum = checksum64(block.stored);
-        before_blocks += block.stored.size() + kTableEntryBytes;
+        before_blocks += block.stored.size() + kUsualEntryBytes;
         out.blocks.push_back(std::move(block));
         ended = made;
         next_target();
@@ -141,6 +145,7 @@ Result<Encoded> encode(const ProgressiveMesh& mesh, const WriteOptions& options)
         ++made;
         if (coder.size() >= target || (sweep_end && double(coder.size()) >= kEnoughBlock * double(target)))
             end_block();
+        return made == ended;
     });
     if (made > ended) end_block();
 
@@ -169,10 +174,12 @@ Result<std::vector<std::byte>> write_progressive_mesh(const ProgressiveMesh& mes
     const ProgressiveMesh& written = encoded->canonical;
     const std::vector<std::byte> details = encode_details(encoded->numbers.details);
 
-    const std::uint64_t base_offset = kHeaderBytes + details.size(),
-                        table_offset = base_offset + encoded->base.size();
-    std::uint64_t offset = table_offset + kTableEntryBytes * encoded->blocks.size(), splits = 0;
-    ByteWriter table;
+    FileInfo front;
+    front.base_vertices = written.base_vertices;
+    front.base_triangles = written.base_triangles;
+    front.base_error = static_cast<float>(error_at(written, 0));
+    std::vector<BlockInfo> blocks;
+    std::uint64_t stored = 0, splits = 0;
     for (const Block& block : encoded->blocks) {
         while (splits < written.splits.size() &&
                written.splits[splits].vertices_end <= block.end.vertices_end &&
@@ -180,56 +187,49 @@ Result<std::vector<std::byte>> write_progressive_mesh(const ProgressiveMesh& mes
                written.splits[splits].corners_end <= block.end.corners_end &&
                written.splits[splits].moves_end <= block.end.moves_end)
             ++splits;
-        table.put(offset);
-        table.put(static_cast<std::uint32_t>(block.stored.size()));
-        table.put(block.checksum);
-        table.put(static_cast<std::uint32_t>(splits));
-        table.put(block.end.vertices_end);
-        table.put(block.end.triangles_end);
-        table.put(block.end.corners_end);
-        table.put(block.end.moves_end);
-        table.put(static_cast<float>(error_at(written, splits)));
-        offset += block.stored.size();
+        BlockInfo entry;
+        entry.bytes = static_cast<std::uint32_t>(block.stored.size());
+        entry.checksum = checksum32(block.stored);
+        entry.splits_end = static_cast<std::uint32_t>(splits);
+        entry.vertices_end = block.end.vertices_end;
+        entry.triangles_end = block.end.triangles_end;
+        entry.corners_end = block.end.corners_end;
+        entry.moves_end = block.end.moves_end;
+        entry.error = static_cast<float>(error_at(written, splits));
+        blocks.push_back(entry);
+        stored += block.stored.size();
     }
+    const std::vector<std::byte> table = encode_table(front, blocks);
 
     ByteWriter file;
     file.put(kMagic);
     file.put(kVersion);
     file.put((encoded->numbers.weights ? kFlagWeights : 0) | (encoded->numbers.lossless ? kFlagLossless : 0));
-    file.put(offset);
-    file.put(static_cast<std::uint32_t>(encoded->blocks.size()));
-    file.put(static_cast<std::uint32_t>(written.positions.size()));
-    file.put(static_cast<std::uint32_t>(written.triangles.size()));
     file.put(written.base_vertices);
     file.put(written.base_triangles);
-    file.put(static_cast<std::uint32_t>(written.splits.size()));
-    file.put(static_cast<std::uint32_t>(written.corner_changes.size()));
-    file.put(static_cast<std::uint32_t>(written.moves.size()));
     file.put(encoded->bounds.low);
     file.put(encoded->bounds.high);
-    file.put(base_offset);
+    file.put(static_cast<std::uint32_t>(details.size()));
     file.put(static_cast<std::uint32_t>(encoded->base.size()));
-    file.put(static_cast<float>(error_at(written, 0)));
-    file.put(checksum64(encoded->base));
-    file.put(checksum64(table.bytes()));
+    file.put(static_cast<std::uint32_t>(encoded->draco_bytes));
+    file.put(static_cast<std::uint32_t>(table.size()));
+    file.put(front.base_error);
+    file.put(encoded->numbers.largest_group);
+    file.put(options.position_bits);
     file.put(encoded->numbers.lattice.origin);
     file.put(encoded->numbers.lattice.step);
-    file.put(options.position_bits);
-    file.put(static_cast<std::uint32_t>(encoded->draco_bytes));
-    file.put(encoded->numbers.largest_group);
-    file.put(static_cast<std::uint32_t>(details.size()));
-    file.put(table_offset);
-    file.put(checksum64(details));
-    file.put(written.origin);
-    file.put(checksum64(file.bytes()));
+    file.put(checksum32(details));
+    file.put(checksum32(encoded->base));
+    file.put(checksum32(table));
+    file.put(checksum32(file.bytes()));
     auto& bytes = file.bytes();
-    bytes.reserve(offset);
+    bytes.reserve(bytes.size() + details.size() + encoded->base.size() + table.size() + stored);
     const auto append = [&](const std::vector<std::byte>& part) {
         bytes.insert(bytes.end(), part.begin(), part.end());
     };
     append(details);
     append(encoded->base);
-    append(table.bytes());
+    append(table);
     for (const Block& block : encoded->blocks) append(block.stored);
     return std::move(bytes);
 }

@@ -12,7 +12,6 @@
 namespace vsplit {
 namespace {
 
-constexpr std::uint32_t kTableOffsetAt = 160, kBlockCountAt = 24;
 /// Splits between two looks at the clock.
 constexpr std::size_t kStride = 4096;
 
@@ -37,14 +36,14 @@ Status Stream::State::take_front() {
             if (file_size && bytes.size() >= *file_size) return fail(std::move(what), true);
             if (bytes.size() >= kHeaderBytes) {
                 // The header is sound: where the table ends can be believed, within the limits.
-                const std::uint64_t end =
-                    get<std::uint64_t>(bytes, kTableOffsetAt) +
-                    std::uint64_t{get<std::uint32_t>(bytes, kBlockCountAt)} * kTableEntryBytes;
+                std::uint64_t end = kHeaderBytes;
+                for (const std::size_t part : {kDetailsBytesAt, kBaseBytesAt, kTableBytesAt})
+                    end += get<std::uint32_t>(bytes, part);
                 if (end > options.limits.max_bytes)
                     return fail({ErrorCode::kLimit,
                                  "the table ends at byte " + std::to_string(end) + ", the limit is " +
                                      std::to_string(options.limits.max_bytes),
-                                 kTableOffsetAt, 0},
+                                 kTableBytesAt, 0},
                                 true);
                 front.grow(std::size_t(end));
             }
@@ -52,9 +51,9 @@ Status Stream::State::take_front() {
         }
         if (file_size && *file_size != read->file_bytes)
             return fail({ErrorCode::kMalformed,
-                         "the server's file has " + std::to_string(*file_size) + " bytes, its header says " +
+                         "the server's file has " + std::to_string(*file_size) + " bytes, its table says " +
                              std::to_string(read->file_bytes),
-                         16, 0},
+                         read->table_offset, 0},
                         true);
         for (const BlockInfo& block : read->blocks)
             if (block.bytes > options.limits.max_bytes)
@@ -84,7 +83,7 @@ Status Stream::State::take_block(std::size_t block) {
     auto at = pending.find(block);
     std::vector<std::byte> bytes = at->second.release();
     pending.erase(at);
-    if (checksum64(bytes) != info->blocks[block].checksum) {
+    if (checksum32(bytes) != info->blocks[block].checksum) {
         pending_bytes -= bytes.size();
         return retry(block,
                      {ErrorCode::kChecksum, "block " + std::to_string(block) + "'s checksum does not match",
@@ -164,9 +163,9 @@ Status Stream::set_file_size(std::uint64_t bytes) {
     if (s.broken) return s.error ? Status(*s.error) : Status(Ok{});
     if (s.info && s.info->file_bytes != bytes)
         return s.fail({ErrorCode::kMalformed,
-                       "the server's file has " + std::to_string(bytes) + " bytes, its header says " +
+                       "the server's file has " + std::to_string(bytes) + " bytes, its table says " +
                            std::to_string(s.info->file_bytes),
-                       16, 0},
+                       s.info->table_offset, 0},
                       true);
     if (!s.info && s.front.prefix() > 0) return s.take_front();
     return Ok{};

@@ -11,18 +11,22 @@ namespace vsplit::test {
 /// Those of base and blocks too, as far as the bytes go.
 inline void reseal_all(Bytes& bytes) {
     if (bytes.size() < kHeaderBytes) return;
-    const auto base = get<std::uint64_t>(bytes, kBaseOffsetAt);
-    const std::uint64_t base_bytes = get<std::uint32_t>(bytes, kBaseBytesAt);
-    if (base <= bytes.size() && base_bytes <= bytes.size() - base)
-        put_at(bytes, kBaseChecksumAt, checksum64(std::span(bytes).subspan(base, base_bytes)));
-    const auto table = get<std::uint64_t>(bytes, kTableOffsetAt);
-    for (std::uint64_t i = 0; i < get<std::uint32_t>(bytes, kBlockCountAt); ++i) {
-        if (table > bytes.size() || kTableEntryBytes * (i + 1) > bytes.size() - table) break;
-        const std::size_t entry = table + kTableEntryBytes * i;
-        const auto at = get<std::uint64_t>(bytes, entry);
-        const std::uint64_t size = get<std::uint32_t>(bytes, entry + kEntryBytesAt);
-        if (at <= bytes.size() && size <= bytes.size() - at)
-            put_at(bytes, entry + kEntryChecksumAt, checksum64(std::span(bytes).subspan(at, size)));
+    const auto parts = front_parts(bytes);
+    if (parts[1].data()) put_at(bytes, kBaseChecksumAt, checksum32(parts[1]));
+    if (parts[2].data()) {
+        const std::span<const std::byte> table = parts[2];
+        const auto begin = std::size_t(table.data() - bytes.data());
+        std::size_t at = 0, block = begin + table.size();
+        while (at < table.size()) {
+            std::uint64_t size = 0, other = 0;
+            bool whole = take_number(table, at, size);
+            for (int i = 0; i < 6 && whole; ++i) whole = take_number(table, at, other);
+            if (!whole || table.size() - at < 4) break;
+            if (size > bytes.size() - block) break;
+            put_at(bytes, begin + at, checksum32(std::span(bytes).subspan(block, size)));
+            at += 4;
+            block += size;
+        }
     }
     reseal(bytes);
 }

@@ -62,15 +62,13 @@ int main(int argc, char** argv) {
     spoil("malformed-magic", [](Bytes& b) { b[1] = std::byte{'P'}; });
     spoil("malformed-behind-the-end", [](Bytes& b) { b.push_back({}); });
     spoil("malformed-counts", [](Bytes& b) {
-        test::put_at(b, test::kBaseVerticesAt, 0xFFFFFFu);
+        test::put_at(b, kBaseVerticesAt, 0xFFFFFFu);
         test::reseal(b);
     });
     spoil("malformed-stream", [&](Bytes& b) {
         const BlockInfo& block = info->blocks[0];
         for (std::uint32_t i = 0; i < block.bytes; ++i) b[block.offset + i] = std::byte(7 * i);
-        test::put_at(b, test::entry_at(*info, 0) + test::kEntryChecksumAt,
-                     checksum64(std::span(b).subspan(block.offset, block.bytes)));
-        test::reseal(b);
+        b = test::with_true_checksums(std::move(b), *info);
     });
     {
         // A lattice beyond the floats, from which some places are one step more: infinite.
@@ -79,13 +77,13 @@ int main(int argc, char** argv) {
         auto written = write_progressive_mesh(test::naive_record(test::make_torus(9, 6), 77), lossless);
         if (!written) return 1;
         Bytes far = *std::move(written);
-        for (std::size_t axis = 0; axis < 3; ++axis) test::put_at(far, test::kLatticeAt + 8 * axis, 1e39);
+        for (std::size_t axis = 0; axis < 3; ++axis) test::put_at(far, kLatticeAt + 8 * axis, 1e39);
         test::reseal(far);
         good &= save(folder + "/malformed/malformed-not-finite.pmesh", far);
     }
-    spoil("unsupported-version", [](Bytes& b) { test::put_at(b, 8, 2u); });
+    spoil("unsupported-version", [](Bytes& b) { test::put_at(b, kVersionAt, 2u); });
     spoil("unsupported-flag", [](Bytes& b) {
-        test::put_at(b, 12, 0x80u);
+        test::put_at(b, kFlagsAt, 0x80u);
         test::reseal(b);
     });
     spoil("truncated-header", [](Bytes& b) { b.resize(100); });

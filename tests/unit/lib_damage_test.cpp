@@ -58,11 +58,7 @@ void require_safe(const Bytes& bytes) {
 
 /// Checksums of base and blocks as the bytes are now, then those of the front.
 void reseal_all(Bytes& bytes, const FileInfo& info) {
-    put_at(bytes, kBaseChecksumAt, checksum64(std::span(bytes).subspan(info.base_offset, info.base_bytes)));
-    for (std::size_t i = 0; i < info.blocks.size(); ++i)
-        put_at(bytes, entry_at(info, i) + kEntryChecksumAt,
-               checksum64(std::span(bytes).subspan(info.blocks[i].offset, info.blocks[i].bytes)));
-    reseal(bytes);
+    bytes = with_true_checksums(std::move(bytes), info);
 }
 
 }  // namespace

@@ -211,7 +211,10 @@ TEST_CASE("A view fetches no more than its nearest place needs, and nothing whil
     run(stream, bytes);
     const std::size_t far = stream.blocks_decoded();
     CHECK(far >= middle + 1);
-    CHECK(far <= middle + 2);
+    // Blocks of one sweep have one error.
+    std::size_t enough = middle;
+    while (double(stream.info()->blocks[enough].error) > error * 0.95) ++enough;
+    CHECK(far <= enough + 1);
     stream.set_view(from({0, 0, 3}, 1));
     run(stream, bytes);
     CHECK(stream.blocks_decoded() > far);

@@ -4,6 +4,7 @@
 // .pmesh bytes for tests that forge them: numbers put in place, and the checksums made to fit again.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -11,6 +12,7 @@
 
 #include "../../lib/bytes/checksum.hpp"
 #include "../../lib/bytes/layout.hpp"
+#include "../../lib/bytes/table.hpp"
 #include "vsplit/read.hpp"
 #include "vsplit/write.hpp"
 
@@ -23,29 +25,46 @@ void put_at(Bytes& bytes, std::size_t offset, T value) {
     std::memcpy(bytes.data() + offset, &value, sizeof(T));
 }
 
-/// Where things are in the header and in an entry of the table (formats/spec/pmesh-1.md).
-inline constexpr std::size_t kFileBytesAt = 16, kBlockCountAt = 24, kVerticesAt = 28, kTrianglesAt = 32,
-                             kBaseVerticesAt = 36, kBaseTrianglesAt = 40, kSplitsAt = 44, kCornersAt = 48,
-                             kMovesAt = 52, kBoundsAt = 56, kBaseOffsetAt = 80, kBaseBytesAt = 88,
-                             kBaseErrorAt = 92, kBaseChecksumAt = 96, kLatticeAt = 112, kPositionBitsAt = 144,
-                             kDracoBytesAt = 148, kLargestGroupAt = 152, kDetailsBytesAt = 156,
-                             kTableOffsetAt = 160;
-inline constexpr std::size_t kEntryBytesAt = 8, kEntryChecksumAt = 12, kEntrySplitsAt = 20;
-
-inline std::size_t entry_at(const FileInfo& info, std::size_t block) {
-    return info.table_offset + kTableEntryBytes * block;
+/// The parts that the header announces, as far as the bytes go: details, base mesh, table.
+inline std::array<std::span<const std::byte>, 3> front_parts(const Bytes& bytes) {
+    std::array<std::span<const std::byte>, 3> parts;
+    std::size_t at = kHeaderBytes, part = 0;
+    for (const std::size_t field : {kDetailsBytesAt, kBaseBytesAt, kTableBytesAt}) {
+        const std::size_t size = get<std::uint32_t>(bytes, field);
+        if (at > bytes.size() || size > bytes.size() - at) break;
+        parts[part++] = std::span(bytes).subspan(at, size);
+        at += size;
+    }
+    return parts;
 }
 
 /// Checksums of details, table and header as the bytes are now; blocks' and base's own stay.
 inline void reseal(Bytes& bytes) {
-    const std::size_t details = get<std::uint32_t>(bytes, kDetailsBytesAt),
-                      table_bytes = kTableEntryBytes * std::size_t{get<std::uint32_t>(bytes, kBlockCountAt)};
-    const std::uint64_t table = get<std::uint64_t>(bytes, kTableOffsetAt);
-    if (kHeaderBytes + details <= bytes.size())
-        put_at(bytes, kDetailsChecksumAt, checksum64(std::span(bytes).subspan(kHeaderBytes, details)));
-    if (table <= bytes.size() && table_bytes <= bytes.size() - table)
-        put_at(bytes, kTableChecksumAt, checksum64(std::span(bytes).subspan(table, table_bytes)));
-    put_at(bytes, kHeaderChecksumAt, checksum64(std::span(bytes).first(kHeaderChecksumAt)));
+    const auto parts = front_parts(bytes);
+    if (parts[0].data()) put_at(bytes, kDetailsChecksumAt, checksum32(parts[0]));
+    if (parts[2].data()) put_at(bytes, kTableChecksumAt, checksum32(parts[2]));
+    put_at(bytes, kHeaderChecksumAt, checksum32(std::span(bytes).first(kHeaderChecksumAt)));
+}
+
+/// `file` with other entries in its table, as they are: what is wrong with them stays.
+inline Bytes with_table(const Bytes& file, const FileInfo& info, std::span<const BlockInfo> blocks) {
+    Bytes out(file.begin(), file.begin() + std::ptrdiff_t(info.table_offset));
+    const Bytes table = encode_table(info, blocks);
+    out.insert(out.end(), table.begin(), table.end());
+    out.insert(out.end(), file.begin() + std::ptrdiff_t(info.data_offset), file.end());
+    put_at(out, kTableBytesAt, std::uint32_t(table.size()));
+    reseal(out);
+    return out;
+}
+
+/// `file` with the checksums of base mesh and blocks as these bytes are now, where the table says that they
+/// are.
+inline Bytes with_true_checksums(Bytes file, const FileInfo& info) {
+    put_at(file, kBaseChecksumAt, checksum32(std::span(file).subspan(info.base_offset, info.base_bytes)));
+    std::vector<BlockInfo> blocks = info.blocks;
+    for (BlockInfo& block : blocks)
+        block.checksum = checksum32(std::span(file).subspan(block.offset, block.bytes));
+    return with_table(file, info, blocks);
 }
 
 /// `file` with other Draco bytes in its base mesh, every place and checksum made to fit.
@@ -55,14 +74,9 @@ inline Bytes with_draco(const Bytes& file, const FileInfo& info, std::span<const
     out.insert(out.end(), file.begin() + std::ptrdiff_t(info.base_offset + info.base_draco_bytes),
                file.end());
     const std::size_t base_bytes = info.base_bytes - info.base_draco_bytes + draco.size();
-    put_at(out, kFileBytesAt, std::uint64_t{out.size()});
     put_at(out, kBaseBytesAt, std::uint32_t(base_bytes));
     put_at(out, kDracoBytesAt, std::uint32_t(draco.size()));
-    put_at(out, kTableOffsetAt, std::uint64_t{info.base_offset + base_bytes});
-    put_at(out, kBaseChecksumAt, checksum64(std::span(out).subspan(info.base_offset, base_bytes)));
-    for (std::size_t i = 0; i < info.blocks.size(); ++i)
-        put_at(out, info.base_offset + base_bytes + kTableEntryBytes * i,
-               info.blocks[i].offset + draco.size() - info.base_draco_bytes);
+    put_at(out, kBaseChecksumAt, checksum32(std::span(out).subspan(info.base_offset, base_bytes)));
     reseal(out);
     return out;
 }
@@ -71,11 +85,10 @@ inline Bytes with_draco(const Bytes& file, const FileInfo& info, std::span<const
 inline Bytes with_block(const Bytes& file, const FileInfo& info, std::span<const std::byte> stored) {
     Bytes out(file.begin(), file.begin() + std::ptrdiff_t(info.blocks[0].offset));
     out.insert(out.end(), stored.begin(), stored.end());
-    put_at(out, kFileBytesAt, std::uint64_t{out.size()});
-    put_at(out, entry_at(info, 0) + kEntryBytesAt, std::uint32_t(stored.size()));
-    put_at(out, entry_at(info, 0) + kEntryChecksumAt, checksum64(stored));
-    reseal(out);
-    return out;
+    BlockInfo block = info.blocks[0];
+    block.bytes = std::uint32_t(stored.size());
+    block.checksum = checksum32(stored);
+    return with_table(out, info, std::span(&block, 1));
 }
 
 }  // namespace vsplit::test

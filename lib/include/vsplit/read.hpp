@@ -35,7 +35,7 @@ using BaseMeshDecoder = std::function<bool(std::span<const std::byte> bytes, std
 struct BlockInfo {
     std::uint64_t offset = 0;      ///< In the file.
     std::uint32_t bytes = 0;       ///< As stored.
-    std::uint64_t checksum = 0;    ///< XXH64 of the stored bytes.
+    std::uint32_t checksum = 0;    ///< The low half of the stored bytes' XXH64.
     std::uint32_t splits_end = 0;  ///< Counts at the end of the block, from the start of the file.
     std::uint32_t vertices_end = 0;
     std::uint32_t triangles_end = 0;
@@ -70,12 +70,13 @@ struct FileInfo {
     std::uint64_t details_offset = 0;
     std::uint32_t details_bytes = 0;
     std::uint64_t table_offset = 0;
+    std::uint32_t table_bytes = 0;
     std::uint64_t data_offset = 0;  ///< End of the table: what read_info() wants to see.
     Float3 bounds_min, bounds_max;  ///< Of the full mesh.
     std::uint64_t base_offset = 0;
     std::uint32_t base_bytes = 0;
     std::uint32_t base_draco_bytes = 0;  ///< The first of them.
-    std::uint64_t base_checksum = 0;
+    std::uint32_t base_checksum = 0;
     std::uint32_t base_vertices = 0, base_triangles = 0;
     float base_error = 0;  ///< Geometric error of the base mesh.
     std::uint32_t vertices = 0, triangles = 0, splits = 0, corner_changes = 0, moves = 0;
