@@ -49,7 +49,7 @@ struct BakeCommand {
     /// A scene into a progressive GLB.
     int run_scene(bake::CollapseOptions options) const;
     /// A mesh, or a scene's shape, into a GLB with MANYFOLD_mesh_progressive.
-    int run_manyfold(const bake::CollapseOptions& options) const;
+    int run_manyfold(bake::CollapseOptions options) const;
     /// The mesh to bake; if the input is a cloud of points, the surface made of it, told in `surface`.
     Result<bake::MeshFile> load(const bake::Progress& progress, std::optional<CloudSurface>& surface,
                                 std::vector<std::string>& notes, bake::PoseSets& poses, int& exit) const;
@@ -133,6 +133,7 @@ int BakeCommand::run_scene(bake::CollapseOptions options) const {
                      {"attributes", scene->mesh.attributes.size()},
                      {"splits", splits},
                      {"degenerate_triangles", result->report.degenerate_triangles},
+                     {"stitched_vertices", result->report.stitched_vertices},
                      {"shown", {{"triangles", shown.mesh.triangles.size()}, {"error", error}}},
                      {"stream_bytes", stream->size()},
                      {"bytes", glb->size()},
@@ -145,6 +146,9 @@ int BakeCommand::run_scene(bake::CollapseOptions options) const {
                             with_commas(triangles), scene->parts.size(), scene->primitives.size(),
                             scene->mesh.attributes.size(), scene->report.format));
     for (const std::string& line : describe(scene->report)) say(common, "  " + line);
+    if (result->report.stitched_vertices > 0)
+        say(common, fmt::format("  {} boundary vertices beside others collapse with them",
+                                with_commas(result->report.stitched_vertices)));
     if (marked)
         for (const std::string& line : marked->describe()) say(common, "  " + line);
     if (posed) say(common, "  " + *posed);
@@ -160,7 +164,9 @@ int BakeCommand::run_scene(bake::CollapseOptions options) const {
     return kDone;
 }
 
-int BakeCommand::run_manyfold(const bake::CollapseOptions& options) const {
+int BakeCommand::run_manyfold(bake::CollapseOptions options) const {
+    // What is stitched comes apart in splits that the extension cannot tell.
+    options.stitch = 0;
     int exit = kDone;
     ProgressBar bar(common);
     auto file = load_mesh(input, exit);
@@ -259,6 +265,7 @@ int BakeCommand::run() const {
                        {"error", error_at(mesh, 0)}}},
                      {"splits", mesh.splits.size()},
                      {"degenerate_triangles", result->report.degenerate_triangles},
+                     {"stitched_vertices", result->report.stitched_vertices},
                      {"components_vanished", result->report.components_vanished},
                      {"fixed_vertices", result->report.fixed_vertices},
                      {"stopped_by", result->report.stopped_by},
@@ -296,6 +303,9 @@ int BakeCommand::run() const {
     if (const std::uint64_t dropped = result->report.degenerate_triangles)
         say(common, fmt::format("  {} triangles with two corners at one point, in the full mesh alone",
                                 with_commas(dropped)));
+    if (result->report.stitched_vertices > 0)
+        say(common, fmt::format("  {} boundary vertices beside others collapse with them",
+                                with_commas(result->report.stitched_vertices)));
     if (marked)
         for (const std::string& line : marked->describe()) say(common, "  " + line);
     if (survey.duplicate_triangles)

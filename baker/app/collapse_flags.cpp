@@ -20,11 +20,18 @@ void CollapseFlags::add_to(CLI::App& command) {
                     "repeated")
         ->type_name("WHAT")
         ->allow_extra_args(false);
+    command
+        .add_option("--stitch", stitch,
+                    "Boundaries that lie on each other, up to this share of the diagonal, collapse as one; 0: "
+                    "each by itself")
+        ->check(CLI::Range(0.0, 0.01))
+        ->capture_default_str();
 }
 
 std::optional<std::string> CollapseFlags::set(bake::CollapseOptions& options) const {
     options.cost = cost == "paper" ? bake::Cost::kPaper : bake::Cost::kQuadric;
     options.placement = placement == "endpoint" ? bake::Placement::kEndpoint : bake::Placement::kOptimal;
+    options.stitch = stitch;
     for (const std::string& lock : locks) {
         if (lock == "boundary") {
             options.lock_boundary = true;

@@ -16,6 +16,7 @@ namespace vsplit::app {
 struct CollapseFlags {
     std::string cost = "quadric", placement = "optimal";
     std::vector<std::string> locks;
+    double stitch = bake::CollapseOptions{}.stitch;
 
     void add_to(CLI::App& command);
     /// The reason if a lock is unknown.

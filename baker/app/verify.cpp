@@ -55,7 +55,9 @@ std::vector<TriangleBits> triangle_bits(const Mesh& mesh, const FileInfo& info, 
     for (const Triangle& t : mesh.triangles) {
         TriangleBits corners;
         for (std::size_t k = 0; k < 3; ++k) {
-            const Float3 p = rounded(mesh.positions[t[k]], info);
+            // 0 and -0 are one place; adding 0 makes them equal.
+            Float3 p = rounded(mesh.positions[t[k]], info);
+            p = {p.x + 0.0f, p.y + 0.0f, p.z + 0.0f};
             const float w = with_weights ? mesh.weights[t[k]] : 0;
             std::memcpy(&corners[k].bits, &p, sizeof(p));
             std::memcpy(&corners[k].bits[3], &w, sizeof(w));

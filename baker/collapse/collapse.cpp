@@ -9,6 +9,7 @@
 #include "collapser.hpp"
 #include "measure.hpp"
 #include "outliers.hpp"
+#include "stitch.hpp"
 
 namespace vsplit::bake {
 namespace {
@@ -104,6 +105,7 @@ Result<CollapseResult> collapse(const Mesh& mesh, const CollapseOptions& options
         return refuse("lock_features_degrees must be 0 to 180");
     if (!within(options.min_normal_cosine, -1, 1)) return refuse("min_normal_cosine must be -1 to 1");
     if (!within(options.min_quality, 0, 1)) return refuse("min_quality must be 0 to 1");
+    if (!within(options.stitch, 0, 0.01)) return refuse("stitch must be 0 to 0.01");
     const Error cancelled{ErrorCode::kCancelled, "cancelled", Error::kNowhere, 0};
     if (!options.part_of.empty() && options.part_of.size() != mesh.positions.size())
         return refuse("part_of must have one number per vertex");
@@ -123,13 +125,33 @@ Result<CollapseResult> collapse(const Mesh& mesh, const CollapseOptions& options
         copies = collapser.take_copies();
         return true;
     };
-    if (mesh.attributes.empty() && mesh.groups.empty()) {
-        if (!record(Collapser(mesh, options))) return cancelled;
-    } else {
-        const PointMesh points = points_of(mesh, options.part_of);
-        if (!record(Collapser(points, mesh, options))) return cancelled;
-        result.report.unused_vertices = points.unused;
-        result.report.degenerate_triangles = points.degenerate;
+    const bool plain = mesh.attributes.empty() && mesh.groups.empty();
+    std::vector<Stitch> stitched;
+    {
+        PointMesh points;
+        const double share = options.lock_boundary ? 0 : options.stitch;
+        if (!plain) {
+            points = points_of(mesh, options.part_of);
+        } else if (share > 0 && may_have_boundary(mesh)) {
+            points.mesh = mesh;
+            points.corners = mesh.triangles;
+        }
+        if (share > 0) stitched = stitch_borders(points, share);
+        extras.wants_births = !stitched.empty();
+        Mesh met;  // the input as it is stitched
+        if (!stitched.empty() && !plain) {
+            met = mesh;
+            for (const Stitch& s : stitched) met.positions[s.vertex] = mesh.positions[s.other];
+        }
+        const bool recorded = plain ? record(Collapser(stitched.empty() ? mesh : points.mesh, options))
+                                    : record(Collapser(points, stitched.empty() ? mesh : met, options));
+        if (!recorded) return cancelled;
+        if (plain) {
+            result.report.unused_vertices -= stitched.size();
+        } else {
+            result.report.unused_vertices = points.unused;
+            result.report.degenerate_triangles = points.degenerate;
+        }
     }
     result.mesh.origin = mesh.origin;
     result.report.collapse_cpu_seconds = cpu_seconds() - start;
@@ -159,7 +181,9 @@ Result<CollapseResult> collapse(const Mesh& mesh, const CollapseOptions& options
         if (options.calibrate && !in_poses.empty()) raise_errors(result.mesh, in_poses, order);
     }
     if (copies.any()) copies.expand(result.mesh);
+    unstitch(result.mesh, mesh, stitched, extras.births, !plain);
     result.report.duplicate_triangles = copies.count();
+    result.report.stitched_vertices = stitched.size();
     if (result.report.degenerate_triangles > 0) bring_back(result.mesh, mesh, extras.births);
     result.report.calibrate_cpu_seconds = cpu_seconds() - start;
     return result;

@@ -379,9 +379,13 @@ ProgressiveMesh Collapser::finish(CollapseReport& report, WedgeExtras& extras) {
     std::vector<VertexHistory>().swap(state_.histories);
     std::vector<Target>().swap(state_.targets);
     state_.paper.reset();
-    ProgressiveMesh mesh = input_ ? finish_with_wedges(record_, wedge_record_, state_.mesh, *state_.wedges,
-                                                       *input_, state_.weights, extras)
-                                  : record_.finish(state_.mesh, state_.weights, nullptr);
+    std::vector<std::uint32_t> born;
+    ProgressiveMesh mesh =
+        input_ ? finish_with_wedges(record_, wedge_record_, state_.mesh, *state_.wedges, *input_,
+                                    state_.weights, extras)
+               : record_.finish(state_.mesh, state_.weights, extras.wants_births ? &born : nullptr);
+    if (!born.empty()) extras.births.assign(state_.mesh.vertex_count(), kNoVertex);
+    for (std::uint32_t v = 0; v < born.size(); ++v) extras.births[state_.mesh.input_vertices()[born[v]]] = v;
     // An error beyond the floats stays the largest of them, so that files hold finite numbers.
     const double unit = 1 / state_.mesh.scale();
     for (Split& split : mesh.splits)

@@ -16,8 +16,8 @@ namespace vsplit::bake {
 class Components {
   public:
     /// A part vanishes only when at most this many of its triangles are left: one split has to bring it
-    /// back. Four times as many of a mesh with attributes.
-    static constexpr std::uint32_t kMaxVanishing = 64;
+    /// back. Parts with many holes through them end no smaller.
+    static constexpr std::uint32_t kMaxVanishing = 256;
 
     /// `part_of`: empty, or one per vertex of the input; distances between different parts mean nothing.
     Components(const StarMesh& mesh, std::span<const std::uint32_t> part_of);

@@ -90,11 +90,9 @@ class BatchKeys {
         std::uint32_t now = 1;
         for (std::uint32_t& number : batch) {
             walk.step();
-            for (std::uint32_t v = walk.gone_begin(); v < walk.gone_end(); ++v)
-                if (changed_[v] == now) {
-                    ++now;
-                    break;
-                }
+            bool fresh = true;
+            each_gone(walk, [&](std::uint32_t v) { fresh &= changed_[v] != now; });
+            now += !fresh;
             each_around(walk, [&](std::uint32_t v) { changed_[v] = now; });
             number = now;
         }
@@ -103,13 +101,23 @@ class BatchKeys {
         const std::uint32_t split = walk.splits_left();
         const std::uint32_t first = split == 0 ? 0 : mesh_.splits[split - 1].moves_end,
                             last = mesh_.splits[split].moves_end;
-        for (std::uint32_t v = walk.gone_begin(); v < walk.gone_end(); ++v)
-            key = std::max({key, locked_[v] + 1, moved_[v]});
+        each_gone(walk, [&](std::uint32_t v) { key = std::max({key, locked_[v] + 1, moved_[v]}); });
         // What moves a vertex says where it is: that keeps its order.
         for (std::uint32_t m = first; m < last; ++m) key = std::max(key, moved_[mesh_.moves[m].vertex]);
         for (std::uint32_t m = first; m < last; ++m) moved_[mesh_.moves[m].vertex] = key;
         each_around(walk, [&](std::uint32_t v) { locked_[v] = std::max(locked_[v], key); });
         return key;
+    }
+    /// The vertices that went with the last step, and those of triangles that went without one, as they do
+    /// where the end of a seam stays as it is.
+    template <class Visit>
+    static void each_gone(const Unsplitter& walk, const Visit& visit) {
+        for (std::uint32_t v = walk.gone_begin(); v < walk.gone_end(); ++v) visit(v);
+        for (std::uint32_t t = walk.removed_begin(); t < walk.removed_end(); ++t) {
+            const Triangle& c = walk.triangle(t);
+            if (std::none_of(c.begin(), c.end(), [&](std::uint32_t v) { return v >= walk.gone_begin(); }))
+                for (const std::uint32_t v : c) visit(v);
+        }
     }
     /// The vertices around those that went with the last step.
     template <class Visit>

@@ -374,8 +374,7 @@ void Region::process_component(std::uint32_t component, Bucket bucket) {
     if (const Bucket due = bucket_of(vanishing_cost(state_, component)); due > bucket)
         return queue_.push(mesh_.vertex_count() + component, due);
     flush();
-    // Parts with seams get stuck at more triangles than plain ones.
-    const std::uint32_t most = Components::kMaxVanishing * (mesh_.has_wedges() ? 4 : 1);
+    const std::uint32_t most = Components::kMaxVanishing;
     if (state_.components.live_triangles(component) > most) {
         // Not small enough yet; again when all costs have doubled.
         if (bucket + kBucketsPerOctave < bucket_of(kNeverCost))

@@ -51,6 +51,7 @@ struct PosedRecord {
 /// What else the end of a record tells.
 struct WedgeExtras {
     std::vector<PosedRecord> posed;  ///< One a pose.
+    bool wants_births = false;       ///< Also of a mesh without wedges.
     std::vector<std::uint32_t>
         births;  ///< Per vertex of the input, its number; kNoVertex if no triangle has it.
 };

@@ -28,11 +28,12 @@ draco::DataType data_type(std::uint32_t component_type) {
     }
 }
 
-draco::GeometryAttribute::Type draco_type(const VertexValues& values) {
+draco::GeometryAttribute::Type draco_type(const VertexValues& values, bool floats) {
     if (values.name == "POSITION") return draco::GeometryAttribute::POSITION;
     switch (values.semantic) {
         case Semantic::kNormal:
-            return draco::GeometryAttribute::NORMAL;
+            // Normals of integers are predicted as if they were on the octahedron, and come out as anything.
+            return floats ? draco::GeometryAttribute::NORMAL : draco::GeometryAttribute::GENERIC;
         case Semantic::kTexcoord:
             return draco::GeometryAttribute::TEX_COORD;
         case Semantic::kColor:
@@ -64,8 +65,9 @@ Result<DracoStream> encode_draco(std::span<const VertexValues* const> names,
         const PackedValues& from = values[i];
         const std::uint32_t width = component_bytes(from.stored.component_type) * names[i]->components;
         draco::GeometryAttribute attribute;
-        attribute.Init(draco_type(*names[i]), nullptr, std::int8_t(names[i]->components),
-                       data_type(from.stored.component_type), from.stored.normalised, width, 0);
+        attribute.Init(draco_type(*names[i], from.stored.component_type == kFloat), nullptr,
+                       std::int8_t(names[i]->components), data_type(from.stored.component_type),
+                       from.stored.normalised, width, 0);
         const int number = mesh.AddAttribute(attribute, true, std::uint32_t(vertices));
         for (std::uint32_t v = 0; v < vertices; ++v)
             mesh.attribute(number)->SetAttributeValue(draco::AttributeValueIndex(v),

@@ -8,9 +8,8 @@ namespace vsplit {
 namespace {
 
 /// -4 ... 4 for a ratio of 2^(-2) ... 2^2, given as its logarithm in 1/256; as 0 ... 8.
-std::uint32_t ratio_class(std::int32_t log) {
-    const std::int32_t c = (log + 4 * 128 + 64) >> 7;
-    return static_cast<std::uint32_t>(std::clamp(c, 0, 8));
+std::int32_t ratio_class(std::int32_t log) {
+    return std::clamp((log + 4 * 128 + 64) >> 7, 0, 8);
 }
 
 std::uint16_t share(std::int32_t below) {
@@ -23,38 +22,56 @@ std::uint16_t product(std::uint32_t a, std::uint32_t b) {
 
 }  // namespace
 
-void CutModel::classify(const LiveStars& mesh, const Star& star) {
+/// For rings of less than kWidth vertices: as loops of a known length, the compiler's vectors do it.
+template <std::size_t kWidth>
+VSPLIT_INLINE void CutModel::classify_ring(const LiveStars& mesh, const Star& star) {
     const std::uint32_t count = star.ring_size();
     const Lattice3 centre = mesh.vertices[star.centre].at;
-    // Whole numbers below 2^53 in doubles: all of this is exact, and log2_linear() is their topmost bits.
-    constexpr std::size_t kMost = Star::kLargestFan + 4;
-    std::array<double, kMost> x, y, z, squared, chord;  // the first two from the one before the first on
-    std::array<std::int32_t, kMost> valence, length, across;
-    double sum = 0;
+    // Offsets, the first from the one before the first on, and zeros behind the one after the last.
+    std::array<std::int32_t, kWidth + 2> dx{}, dy{}, dz{};
+    std::array<std::int32_t, kWidth> valence{}, edge, chord;
     for (std::uint32_t i = 0; i < count; ++i) {
         const LiveVertex& v = mesh.vertices[star.ring[i]];
-        x[i + 1] = v.at[0] - centre[0];
-        y[i + 1] = v.at[1] - centre[1];
-        z[i + 1] = v.at[2] - centre[2];
+        dx[i + 1] = v.at[0] - centre[0];
+        dy[i + 1] = v.at[1] - centre[1];
+        dz[i + 1] = v.at[2] - centre[2];
         valence[i] = static_cast<std::int32_t>(9 * (std::clamp<std::uint32_t>(v.star, 2, 9) - 2));
     }
-    for (auto* axis : {&x, &y, &z}) (*axis)[0] = (*axis)[count], (*axis)[count + 1] = (*axis)[1];
-    for (std::uint32_t i = 0; i < count; ++i) {
+    for (auto* axis : {&dx, &dy, &dz}) (*axis)[0] = (*axis)[count], (*axis)[count + 1] = (*axis)[1];
+    // Whole numbers below 2^53 in doubles: all of this is exact, and log2_linear() are their topmost bits.
+    std::array<double, kWidth + 2> x, y, z;
+    for (std::size_t i = 0; i < kWidth + 2; ++i) x[i] = dx[i], y[i] = dy[i], z[i] = dz[i];
+    std::array<double, kWidth> squared, across;
+    for (std::size_t i = 0; i < kWidth; ++i) {
         squared[i] = 1 + x[i + 1] * x[i + 1] + y[i + 1] * y[i + 1] + z[i + 1] * z[i + 1];
-        const double dx = x[i + 2] - x[i], dy = y[i + 2] - y[i], dz = z[i + 2] - z[i];
-        chord[i] = 1 + dx * dx + dy * dy + dz * dz;
+        const double ax = x[i + 2] - x[i], ay = y[i + 2] - y[i], az = z[i + 2] - z[i];
+        across[i] = 1 + ax * ax + ay * ay + az * az;
     }
-    for (std::uint32_t i = 0; i < count; ++i) {
-        sum += squared[i];
-        length[i] = log2_linear(squared[i]);
-        across[i] = log2_linear(chord[i]);
-    }
+    // Behind the ring are its first vertex once more, and ones.
+    double sum = 0;
+    for (std::size_t i = 0; i < kWidth; i += 2) sum += squared[i] + squared[i + 1];
+    sum -= squared[count] + static_cast<double>(kWidth - count - 1);
     const std::int32_t mean = log2_linear(sum) - log2_linear(std::uint64_t{count});
+    for (std::size_t i = 0; i < kWidth; ++i) {
+        const std::int32_t length = log2_linear(squared[i]);
+        edge[i] = valence[i] + ratio_class(length - mean);
+        chord[i] = ratio_class(log2_linear(across[i]) - length - 256);
+    }
     for (std::uint32_t i = 0; i < count; ++i) {
-        edge_kind_[i] = static_cast<std::uint8_t>(valence[i] + ratio_class(length[i] - mean));
-        chord_kind_[i] = static_cast<std::uint8_t>(ratio_class(across[i] - length[i] - 256));
+        edge_kind_[i] = static_cast<std::uint8_t>(edge[i]);
+        chord_kind_[i] = static_cast<std::uint8_t>(chord[i]);
     }
     if (!star.closed) chord_kind_[0] = chord_kind_[count - 1] = 9;
+}
+
+void CutModel::classify(const LiveStars& mesh, const Star& star) {
+    const std::uint32_t count = star.ring_size();
+    if (count < 8)
+        classify_ring<8>(mesh, star);
+    else if (count < 16)
+        classify_ring<16>(mesh, star);
+    else
+        classify_ring<Star::kLargestFan + 2>(mesh, star);
 }
 
 template <std::uint32_t kBlocks>
@@ -92,8 +109,8 @@ std::uint32_t CutModel::weigh(const Star& star, const Cut& wings, std::size_t fa
     std::int32_t most_wing = INT32_MIN, most_child = INT32_MIN;
     for (std::uint32_t i = 0; i < ring; ++i) {
         const Role &edge = by_edge_[edge_kind_[i]], &chord = by_chord_[chord_kind_[i]];
-        wing[i] = edge.wing + chord.wing;
-        child[i] = edge.child + chord.child;
+        wing[i] = kWeighEdge * edge.wing() + kWeighChord * chord.wing();
+        child[i] = kWeighEdge * edge.child() + kWeighChord * chord.child();
         most_wing = std::max(most_wing, wing[i]);
         most_child = std::max(most_child, child[i]);
     }
@@ -114,7 +131,7 @@ std::uint32_t CutModel::weigh(const Star& star, const Cut& wings, std::size_t fa
     for (std::uint32_t l = shortest; l <= longest; ++l) length_[l] = share(most - length[l]);
 
     for (std::uint32_t i = 0; i < n; ++i) {
-        const bool may = star.ring[i] < locked && star.ring_at(i + 1) < locked;
+        const bool may = std::max(star.ring[i], star.ring[i + 1]) < locked;
         open_[i] = open_[i + round] = may ? 0xFFFF : 0;
     }
     if (!star.closed) std::fill(open_.begin() + n, open_.end(), std::uint16_t{0});
@@ -139,15 +156,14 @@ std::uint32_t CutModel::weigh(const Star& star, const Cut& wings, std::size_t fa
 }
 
 void CutModel::learn(const Star& star, const Cut& cut) {
-    const std::uint32_t n = star.size, count = star.ring_size();
-    std::array<std::uint8_t, Star::kLargestFan + 1> role{};
-    const auto wrapped = [&](std::uint32_t i) { return star.closed && i >= n ? i - n : i; };
-    for (std::uint32_t i = cut.begin; i <= cut.begin + cut.length; ++i) role[wrapped(i)] = 2;
-    if (cut.first_wing) role[cut.begin] = 1;
-    if (cut.last_wing) role[wrapped(cut.begin + cut.length)] = 1;
+    const std::uint32_t n = star.size, count = star.ring_size(), round = star.closed ? n : 0;
     for (std::uint32_t i = 0; i < count; ++i) {
-        by_edge_[edge_kind_[i]].saw(role[i], kWeighEdge);
-        by_chord_[chord_kind_[i]].saw(role[i], kWeighChord);
+        // Steps from the run's begin: beyond its end where the parent's are.
+        const std::uint32_t steps = i - cut.begin + (i < cut.begin ? round : 0);
+        const bool wing = ((steps == 0) & cut.first_wing) | ((steps == cut.length) & cut.last_wing);
+        const std::size_t role = (2 - std::size_t{wing}) & (0 - std::size_t{steps <= cut.length});
+        by_edge_[edge_kind_[i]].saw(role);
+        by_chord_[chord_kind_[i]].saw(role);
     }
     const std::size_t family = star.closed ? 0 : cut.first_wing && cut.last_wing ? 1 : 2;
     const std::size_t most = std::min<std::size_t>(n, kLongest),

@@ -49,18 +49,22 @@ class CutModel {
 
   private:
     static constexpr std::uint16_t kMostSeen = 1000;
-    /// Of a ring vertex in one kind of surroundings: how often it was the parent's, a wing, the child's; and
-    /// `weigh` times the log2 of the odds of a wing and of the child's against the parent's, in 1/4096.
+    /// Of a ring vertex in one kind of surroundings: how often it was the parent's, a wing, the child's, and
+    /// log2_count() of that.
     struct Role {
         std::array<std::uint16_t, 3> count{2, 2, 2};
-        std::int32_t wing = 0, child = 0;
-        void saw(unsigned role, std::int32_t weigh) {
+        std::array<std::int16_t, 3> log{256, 256, 256};
+        void saw(std::size_t role) {
             if ((count[role] = static_cast<std::uint16_t>(count[role] + 4)) > kMostSeen)
-                for (auto& c : count) c = static_cast<std::uint16_t>((c >> 1) | 1);
-            const std::int32_t parent = log2_count(count[0]);
-            wing = weigh * (log2_count(count[1]) - parent);
-            child = weigh * (log2_count(count[2]) - parent);
+                for (std::size_t i = 0; i < 3; ++i) {
+                    count[i] = static_cast<std::uint16_t>((count[i] >> 1) | 1);
+                    log[i] = kCountLogs[count[i]];
+                }
+            log[role] = kCountLogs[count[role]];
         }
+        /// Odds against the parent's.
+        std::int32_t wing() const { return log[1] - log[0]; }
+        std::int32_t child() const { return log[2] - log[0]; }
     };
     static constexpr std::size_t kLongest = 16;
     /// What each hint counts, in 1/16: they overlap, so all of each would be too much.
@@ -74,6 +78,8 @@ class CutModel {
     };
 
     void classify(const LiveStars& mesh, const Star& star);
+    template <std::size_t kWidth>
+    void classify_ring(const LiveStars& mesh, const Star& star);
     /// Fills weights_ and sums_ for all runs of this family (closed, both wings, one wing); their sum.
     std::uint32_t weigh(const Star& star, const Cut& wings, std::size_t family, std::uint32_t locked);
     template <std::uint32_t kBlocks>

@@ -5,6 +5,10 @@
 #include <algorithm>
 #include <bit>
 
+#if defined(__SSE2__)
+#include <emmintrin.h>
+#endif
+
 #include "fixed_point.hpp"
 #include "large_pages.hpp"
 
@@ -107,11 +111,26 @@ void LiveStars::gather(std::uint32_t vertex, Star& star) {
             least = std::min(least, slot[i].vertex);
         }
     }
-    std::uint32_t to = 0;
-    for (std::uint32_t i = first; i < count; ++i, ++to)
-        star.ring[to] = slot[i].vertex, star.corner[to] = slot[i].corner;
-    for (std::uint32_t i = 0; i < first; ++i, ++to)
-        star.ring[to] = slot[i].vertex, star.corner[to] = slot[i].corner;
+    if (v.power == 0) {
+        // Whole lines, whatever is in use of them: copies of a known length need no loop.
+        std::array<std::uint32_t, kLine> ring, corner;
+        for (std::uint32_t i = 0; i < kLine; ++i) ring[i] = slot[i].vertex, corner[i] = slot[i].corner;
+        std::array<std::uint32_t, 2 * kLine> rings{}, corners{};
+        for (const std::uint32_t to : {0u, count}) {
+            std::copy_n(ring.data(), kLine, rings.data() + to);
+            std::copy_n(corner.data(), kLine, corners.data() + to);
+        }
+        for (const std::uint32_t to : {0u, count}) {
+            std::copy_n(rings.data() + first, kLine, star.ring.data() + to);
+            std::copy_n(corners.data() + first, kLine, star.corner.data() + to);
+        }
+        return;
+    }
+    for (std::uint32_t i = 0, from = first; i < count; ++i, from = from + 1 == count ? 0 : from + 1)
+        star.ring[i] = slot[from].vertex, star.corner[i] = slot[from].corner;
+    if (!star.closed) return;
+    std::copy_n(star.ring.data(), count, star.ring.data() + count);
+    std::copy_n(star.corner.data(), count, star.corner.data() + count);
 }
 
 void LiveStars::order(std::uint32_t vertex) {
@@ -176,41 +195,66 @@ void LiveStars::set_fan(LiveVertex& vertex, std::uint32_t triangles, bool closed
                                                  : LiveVertex::Shape::kOpen;
 }
 
+std::uint32_t LiveStars::find(const Slot* slot, const LiveVertex& v, std::uint32_t vertex) {
+#if defined(__SSE2__)
+    if (v.power == 0) {
+        const auto* const line = reinterpret_cast<const float*>(slot);
+        const __m128i wanted = _mm_set1_epi32(static_cast<int>(vertex));
+        const auto equal = [&](std::size_t four) {
+            const __m128 low = _mm_loadu_ps(line + 8 * four), high = _mm_loadu_ps(line + 8 * four + 4);
+            return _mm_cmpeq_epi32(_mm_castps_si128(_mm_shuffle_ps(low, high, 0x88)), wanted);
+        };
+        const int found = _mm_movemask_epi8(_mm_packs_epi32(equal(0), equal(1)));
+        return static_cast<std::uint32_t>(std::countr_zero(static_cast<unsigned>(found))) / 2;
+    }
+#endif
+    std::uint32_t at = 0;
+    while (slot[at].vertex != vertex) ++at;
+    return at;
+}
+
+void LiveStars::shift(Slot* slot, const LiveVertex& v, std::uint32_t at) {
+    if (v.power > 0) {
+        std::copy_backward(slot + at, slot + v.slots(), slot + v.slots() + 1);
+        return;
+    }
+    std::array<Slot, kLine> old;
+    std::copy_n(slot, kLine, old.data());
+    for (std::uint32_t i = 1; i < kLine; ++i) {
+        const std::uint32_t later = 0u - std::uint32_t{i > at};
+        slot[i].vertex = (old[i - 1].vertex & later) | (old[i].vertex & ~later);
+        slot[i].corner = (old[i - 1].corner & later) | (old[i].corner & ~later);
+    }
+}
+
 void LiveStars::replace(std::uint32_t vertex, std::uint32_t parent, std::uint32_t child) {
-    if (!vertices[vertex].is_fan()) return;
-    Slot* slot = list(vertex);
-    while (slot->vertex != parent) ++slot;
-    slot->vertex = child;
+    const LiveVertex& v = vertices[vertex];
+    if (!v.is_fan()) return;
+    Slot* const slot = list(vertex);
+    slot[find(slot, v, parent)].vertex = child;
 }
 
 void LiveStars::insert(std::uint32_t vertex, std::uint32_t parent, std::uint32_t child, std::uint32_t corner,
                        bool after) {
     LiveVertex& v = vertices[vertex];
-    const std::uint32_t count = v.slots();
-    Slot* const slot = make_room(vertex, count + 1);
+    Slot* const slot = make_room(vertex, v.slots() + 1);
     if (!v.is_fan()) {
         v.shape = LiveVertex::Shape::kUnknown;
         slot[v.star++].corner = corner;
         return;
     }
-    std::uint32_t at = 0;
-    while (slot[at].vertex != parent) ++at;
-    if (after) {
-        std::copy_backward(slot + at + 1, slot + count, slot + count + 1);
-        slot[at + 1] = {child, slot[at].corner};
-        slot[at].corner = corner;
-    } else {
-        std::copy_backward(slot + at, slot + count, slot + count + 1);
-        slot[at] = {child, corner};
-    }
+    const std::uint32_t parents = find(slot, v, parent), at = parents + std::uint32_t{after};
+    const std::uint32_t beyond = after ? slot[parents].corner : corner;
+    shift(slot, v, at);
+    slot[at] = {child, beyond};
+    if (after) slot[parents].corner = corner;
     if (++v.star > Star::kLargestFan) v.shape = LiveVertex::Shape::kOther;
 }
 
 void LiveStars::split(const Star& star, const Cut& cut, const Lattice3& parent_at, const Lattice3& child_at) {
     const std::uint32_t p = star.centre, child = vertex_count(), n = star.size, ring = star.ring_size(),
                         begin = cut.begin, length = cut.length, end = begin + length;
-    const auto wrapped = [&](std::uint32_t i) { return star.closed && i >= n ? i - n : i; };
-    const std::uint32_t first_at = star.ring[begin], last_at = star.ring[wrapped(end)];
+    const std::uint32_t first_at = star.ring[begin], last_at = star.ring[end];
     // New triangles: (child, last, parent), then (child, parent, first).
     const auto last_corner = static_cast<std::uint32_t>(3 * triangles.size()),
                first_corner = last_corner + (cut.last_wing ? 3 : 0);
@@ -230,11 +274,10 @@ void LiveStars::split(const Star& star, const Cut& cut, const Lattice3& parent_a
     Slot* to = make_room(child, length + 2);
     if (cut.first_wing && !closed) *to++ = {p, first_corner};
     for (std::uint32_t i = begin; i < end; ++i) {
-        const std::uint32_t k = wrapped(i);
-        corners[star.corner[k]] = child;
-        *to++ = {star.ring[k], star.corner[k]};
-        add(run, vertices[star.ring[k]].at);
-        add(run, vertices[star.ring[wrapped(i + 1)]].at);
+        corners[star.corner[i]] = child;
+        *to++ = {star.ring[i], star.corner[i]};
+        add(run, vertices[star.ring[i]].at);
+        add(run, vertices[star.ring[i + 1]].at);
     }
     *to++ = {last_at, cut.last_wing ? last_corner : kNoVertex};
     if (cut.last_wing) *to++ = {p, cut.first_wing ? first_corner : kNoVertex};
@@ -247,8 +290,7 @@ void LiveStars::split(const Star& star, const Cut& cut, const Lattice3& parent_a
     to = make_room(p, kept + 1);
     if (star.closed) {
         *to++ = {child, last_corner + 2};
-        for (std::uint32_t i = end; i < begin + n; ++i)
-            *to++ = {star.ring[wrapped(i)], star.corner[wrapped(i)]};
+        for (std::uint32_t i = end; i < begin + n; ++i) *to++ = {star.ring[i], star.corner[i]};
         *to++ = {first_at, first_corner + 1};
     } else {
         if (cut.first_wing) {
@@ -287,7 +329,7 @@ void LiveStars::split(const Star& star, const Cut& cut, const Lattice3& parent_a
             for (std::size_t k = 0; k < 3; ++k) here.ring[k] += sectors * stays[k];
         }
     for (std::uint32_t i = begin; i <= end; ++i) {
-        const std::uint32_t w = star.ring[wrapped(i)];
+        const std::uint32_t w = star.ring[i];
         LiveVertex& here = vertices[w];
         const std::uint32_t sectors = std::uint32_t{i > begin} + std::uint32_t{i < end};
         for (std::size_t k = 0; k < 3; ++k) here.ring[k] += sectors * goes[k];

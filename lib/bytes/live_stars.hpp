@@ -49,11 +49,10 @@ struct Star {
     bool closed = false;
     std::uint32_t size = 0;              ///< Triangles.
     std::vector<std::uint32_t> corners;  ///< Those that hold the centre, ascending; if it is no fan.
-    std::array<std::uint32_t, kLargestFan + 1>
-        ring;  ///< Sector i lies between ring i and i + 1 (closed: modulo size).
-    std::array<std::uint32_t, kLargestFan + 1> corner;  ///< The centre's in each sector.
+    /// Sector i lies between ring i and i + 1; closed ones go round twice.
+    std::array<std::uint32_t, 2 * kLargestFan + 8> ring;
+    std::array<std::uint32_t, 2 * kLargestFan + 8> corner;  ///< The centre's in each sector.
     std::uint32_t ring_size() const { return closed ? size : size + 1; }
-    std::uint32_t ring_at(std::uint32_t i) const { return ring[closed && i >= size ? i - size : i]; }
 };
 
 /// A run of sectors begin .. begin + length of a fan, and the new triangles at its ends.
@@ -124,6 +123,10 @@ class LiveStars {
         std::uint32_t vertex, corner;
     };
     static constexpr std::uint32_t kLine = 8;
+    /// Where in a fan's list a vertex is that it has.
+    static std::uint32_t find(const Slot* slot, const LiveVertex& v, std::uint32_t vertex);
+    /// Makes way for a slot at this place of a list.
+    static void shift(Slot* slot, const LiveVertex& v, std::uint32_t at);
     struct alignas(64) Line {
         std::array<Slot, kLine> slot;
     };

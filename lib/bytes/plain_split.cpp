@@ -8,6 +8,27 @@
 #include "split_codec.hpp"
 
 namespace vsplit {
+namespace {
+
+/// Ascending. Runs are short as a rule, and a comparison's outcome is news: no branches up to four.
+void sort_few(std::span<std::uint32_t> row) {
+    const auto pair = [&](std::size_t i, std::size_t j) {
+        const std::uint32_t low = std::min(row[i], row[j]), high = std::max(row[i], row[j]);
+        row[i] = low;
+        row[j] = high;
+    };
+    if (row.size() > 4) {
+        std::sort(row.begin(), row.end());
+    } else if (row.size() == 4) {
+        pair(0, 1), pair(2, 3), pair(0, 2), pair(1, 3), pair(1, 2);
+    } else if (row.size() == 3) {
+        pair(0, 1), pair(1, 2), pair(0, 1);
+    } else if (row.size() == 2) {
+        pair(0, 1);
+    }
+}
+
+}  // namespace
 
 bool SplitCodec::find_cut(std::span<const std::uint32_t> taken, const SplitPlan& wanted, std::uint32_t child,
                           Cut& cut) const {
@@ -51,47 +72,35 @@ bool SplitCodec::find_cut(std::span<const std::uint32_t> taken, const SplitPlan&
 
 void SplitCodec::take_run(std::uint32_t child, SplitPlan& out) {
     const std::uint32_t n = star_.size, p = star_.centre, begin = run_.begin, end = begin + run_.length;
-    // A few at a time: each goes where it belongs.
     const std::size_t before = out.taken.size();
-    out.taken.resize(before + run_.length);
-    std::uint32_t* const taken = out.taken.data() + before;
-    for (std::uint32_t i = begin; i < end; ++i) {
-        const std::uint32_t corner = star_.corner[i >= n ? i - n : i];
-        std::uint32_t at = i - begin;
-        for (; at > 0 && taken[at - 1] > corner; --at) taken[at] = taken[at - 1];
-        taken[at] = corner;
-    }
-    const auto group_of = [&](std::uint32_t i) {
-        return groups.empty() ? 0u : groups[star_.corner[star_.closed && i >= n ? i - n : i] / 3];
-    };
+    out.taken.insert(out.taken.end(), star_.corner.data() + begin, star_.corner.data() + end);
+    sort_few(std::span(out.taken).subspan(before));
+    const auto group_of = [&](std::uint32_t i) { return groups.empty() ? 0u : groups[star_.corner[i] / 3]; };
     if (run_.last_wing) {
-        implied_triangles_.push_back({child, star_.ring_at(end >= n && star_.closed ? end - n : end), p});
+        implied_triangles_.push_back({child, star_.ring[end], p});
         implied_groups_.push_back(group_of(end > 0 ? end - 1 : 0));
     }
     if (run_.first_wing) {
         implied_triangles_.push_back({child, p, star_.ring[begin]});
         implied_groups_.push_back(group_of(begin < n ? begin : n - 1));
     }
-    // The ring around the child, without the parent.
-    child_ring_.size = 0;
-    for (std::uint32_t i = begin; i <= end; ++i)
-        child_ring_.vertex[child_ring_.size++] = star_.ring[star_.closed && i >= n ? i - n : i];
+    child_ring_.size = run_.length + 1;
+    std::copy(star_.ring.data() + begin, star_.ring.data() + end + 1, child_ring_.vertex.data());
     child_ring_.open = !(run_.first_wing && run_.last_wing);
 }
 
 void SplitCodec::find_parent_ring() {
     const std::uint32_t n = star_.size, begin = run_.begin, end = begin + run_.length;
-    parent_ring_.size = 0;
     parent_ring_.open = !star_.closed;
+    const std::uint32_t* const ring = star_.ring.data();
+    std::uint32_t* to = parent_ring_.vertex.data();
     if (star_.closed) {
-        for (std::uint32_t i = end; i <= begin + n; ++i)
-            parent_ring_.vertex[parent_ring_.size++] = star_.ring[i < n ? i : i < 2 * n ? i - n : i - 2 * n];
-        return;
+        to = std::copy(ring + end, ring + begin + n + 1, to);
+    } else {
+        if (run_.last_wing) to = std::copy(ring + end, ring + n + 1, to);
+        if (run_.first_wing) to = std::copy(ring, ring + begin + 1, to);
     }
-    for (std::uint32_t i = run_.last_wing ? end : n + 1; i <= n; ++i)
-        parent_ring_.vertex[parent_ring_.size++] = star_.ring[i];
-    for (std::uint32_t i = 0; i < (run_.first_wing ? begin + 1 : 0); ++i)
-        parent_ring_.vertex[parent_ring_.size++] = star_.ring[i];
+    parent_ring_.size = static_cast<std::uint32_t>(to - parent_ring_.vertex.data());
 }
 
 bool SplitCodec::find_plain(std::uint32_t primary, const SplitPlan& wanted, Cut& cut,
@@ -104,7 +113,7 @@ bool SplitCodec::find_plain(std::uint32_t primary, const SplitPlan& wanted, Cut&
         return false;
     std::array<Triangle, 2> implied;
     std::size_t count = 0;
-    if (cut.last_wing) implied[count++] = {child, star_.ring_at(cut.begin + cut.length), primary};
+    if (cut.last_wing) implied[count++] = {child, star_.ring[cut.begin + cut.length], primary};
     if (cut.first_wing) implied[count++] = {child, primary, star_.ring[cut.begin]};
     sources.clear();
     for (std::size_t i = 0; i < count; ++i)
@@ -148,12 +157,13 @@ void SplitCodec::apply_plain(const SplitPlan& plan) {
     if (!plan.moves.empty()) {
         parent_at = plan.moves[0].at;
         if (shape_.lossless) finer[p] = plan.moves[0].finer;
-        std::copy_n(plan.move_values.begin(), stride,
-                    values.begin() + static_cast<std::ptrdiff_t>(p * stride));
+        if (stride > 0)
+            std::copy_n(plan.move_values.begin(), stride,
+                        values.begin() + static_cast<std::ptrdiff_t>(p * stride));
     }
     live.split(star_, run_, parent_at, birth.at);
     order_.add(p);
-    values.insert(values.end(), plan.birth_values.begin(), plan.birth_values.end());
+    if (stride > 0) values.insert(values.end(), plan.birth_values.begin(), plan.birth_values.end());
     if (shape_.lossless) finer.push_back(birth.finer);
     if (shape_.group_bits > 0) groups.insert(groups.end(), plan.groups.begin(), plan.groups.end());
     for (std::uint32_t i = 0; i < star_.ring_size(); ++i) touch(star_.ring[i]);
@@ -162,13 +172,12 @@ void SplitCodec::apply_plain(const SplitPlan& plan) {
     if (!is_batch()) return;
     // What the batch has changed for good: the run, and the wings. Inside the run, two of them at each
     // vertex.
-    const std::uint32_t n = star_.size, end = run_.begin + run_.length;
-    for (std::uint32_t i = run_.begin; i <= end; ++i) {
-        LiveVertex& here = live.vertices[star_.ring[star_.closed && i >= n ? i - n : i]];
-        here.locked += std::uint32_t{i > run_.begin} + std::uint32_t{i < end} +
-                       std::uint32_t{run_.first_wing && i == run_.begin} +
-                       std::uint32_t{run_.last_wing && i == end};
-    }
+    const std::uint32_t end = run_.begin + run_.length;
+    for (std::uint32_t i = run_.begin; i <= end; ++i)
+        live.vertices[star_.ring[i]].locked +=
+            std::uint32_t{i > run_.begin} + std::uint32_t{i < end} +
+            (std::uint32_t{run_.first_wing} & std::uint32_t{i == run_.begin}) +
+            (std::uint32_t{run_.last_wing} & std::uint32_t{i == end});
     live.vertices[p].locked += std::uint32_t{run_.first_wing} + std::uint32_t{run_.last_wing};
 }
 

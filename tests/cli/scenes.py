@@ -254,12 +254,15 @@ def crowded(parts=110):
     s.node(mesh=s.add('meshes', {'primitives': [{'attributes': {'POSITION': s.accessor(ring, bounds=True)}, 'mode': 6, 'material': coat}]}), translation=[-3, 0, 0])
     points, normals, uvs, corners = sheet(10)
     share = [[math.exp(-3 * (8 * p[1] - j) ** 2 / 8) for j in range(8)] for p in points]
-    rows = [[round(w / sum(row), 4) for w in row] for row in share]
+    rows = [[round(4096 * w / sum(row)) for w in row] for row in share]
     for row in rows:
-        row[0] += 1 - sum(row)
-    joints = [s.accessor([tuple(range(4 * k, 4 * k + 4))] * len(points), UBYTE, 'VEC4') for k in range(2)]
+        row[row.index(max(row))] += 4096 - sum(row)
+    rows = [[w / 4096 for w in row] for row in rows]
+    # A joint without weight is 0.
+    joints = [s.accessor([tuple(j if row[j] > 0 else 0 for j in range(4 * k, 4 * k + 4)) for row in rows], UBYTE, 'VEC4') for k in range(2)]
     weights = [s.accessor([tuple(row[4 * k:4 * k + 4]) for row in rows], kind='VEC4') for k in range(2)]
-    bones = [s.node(name=f'bone {j}', translation=[0, j / 8, 0]) for j in range(8)]
+    bones = [s.node(root=False, name=f'bone {j}', translation=[0, j / 8, 0]) for j in range(8)]
+    s.node(name='bones', children=bones)
     inverse = s.accessor([[1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, -j / 8, 0, 1] for j in range(8)], kind='MAT4')
     mesh = s.add('meshes', {'primitives': [{'attributes': {'POSITION': s.accessor(points, bounds=True), 'NORMAL': s.accessor(normals),
                                                            'JOINTS_0': joints[0], 'JOINTS_1': joints[1], 'WEIGHTS_0': weights[0], 'WEIGHTS_1': weights[1]},
@@ -272,12 +275,159 @@ def crowded(parts=110):
     return s
 
 
+def ring(n, m, radius=1.0, tube=0.35):
+    """A torus whose texture is mirrored half way round: points, normals, tangents, texture coordinates, triangles."""
+    points, normals, along, uvs, corners = [], [], [], [], []
+    for i in range(n + 1):
+        for j in range(m + 1):
+            a, b = 2 * math.pi * (i % n) / n, 2 * math.pi * (j % m) / m
+            out = radius + tube * math.cos(b)
+            points.append((out * math.cos(a), out * math.sin(a), tube * math.sin(b)))
+            normals.append((math.cos(b) * math.cos(a), math.cos(b) * math.sin(a), math.sin(b)))
+            along.append((-math.sin(a), math.cos(a), 0.0, 1.0 if 2 * i <= n else -1.0))
+            uvs.append((1 - abs(1 - 2 * i / n), j / m))
+    for i in range(n):
+        for j in range(m):
+            a = i * (m + 1) + j
+            corners += [a, a + m + 1, a + m + 2, a, a + m + 2, a + 1]
+    return points, normals, along, uvs, corners
+
+
+def shapes(n=20, m=10):
+    """Every mode and way to store: interleaved, without indices, strips with and without, a fan by bytes, a sparse accessor over another, loops,
+    line strips and points, two scenes, a mirroring node."""
+    s = Scene()
+    points, normals, along, uvs, corners = ring(n, m)
+    rows = b''.join(struct.pack('<3f3f2H4B', *p, *v, round(65535 * u), round(65535 * w), 255, 128, 64, 255) for p, v, (u, w) in zip(points, normals, uvs))
+    view = s.view(rows, byteStride=32, target=34962)
+    near = [struct.unpack('<3f', struct.pack('<3f', *p)) for p in points]
+
+    def column(offset, component, kind, **more):
+        return s.add('accessors', {'bufferView': view, 'byteOffset': offset, 'componentType': component, 'count': len(points), 'type': kind, **more})
+
+    def moved(places, x, y):
+        return s.accessor([(p[0] + x, p[1] + y, p[2]) for p in places], bounds=True)
+    strip = []
+    for i in range(n):
+        row = [k for j in range(m + 1) for k in (i * (m + 1) + j, (i + 1) * (m + 1) + j)]
+        strip += ([strip[-1], row[0]] if strip else []) + row
+    rim = [(0.0, 0.0, 0.0)] + [(math.cos(0.1 * i), math.sin(0.1 * i), 0.1 * math.sin(i)) for i in range(60)]
+    s.node(mesh=s.add('meshes', {'primitives': [
+        {'attributes': {'POSITION': column(0, FLOAT, 'VEC3', min=[min(p[c] for p in near) for c in range(3)], max=[max(p[c] for p in near) for c in range(3)]),
+                        'NORMAL': column(12, FLOAT, 'VEC3'), 'TEXCOORD_0': column(24, USHORT, 'VEC2', normalized=True),
+                        'COLOR_0': column(28, UBYTE, 'VEC4', normalized=True)}, 'indices': s.accessor(corners, UINT, 'SCALAR', padded=False)},
+        {'attributes': {'POSITION': moved([points[c] for c in corners], 3, 0), 'NORMAL': s.accessor([normals[c] for c in corners])}},
+        {'attributes': {'POSITION': moved(points, -3, 0)}, 'indices': s.accessor(strip, USHORT, 'SCALAR', padded=False), 'mode': 5},
+        {'attributes': {'POSITION': moved([points[c] for c in strip[:21]], 0, 3)}, 'mode': 5},
+        {'attributes': {'POSITION': moved(rim, 0, -3)}, 'indices': s.accessor(list(range(61)), UBYTE, 'SCALAR', padded=False), 'mode': 6},
+        {'attributes': {'POSITION': moved(rim, 6, 0)}, 'mode': 2}, {'attributes': {'POSITION': moved(rim, 6, 0)}, 'mode': 3},
+        {'attributes': {'POSITION': moved(rim, 6, 0)}, 'mode': 0}]}))
+    risen = [(x, y, z + 1) for x, y, z in points[:20]]
+    position = s.accessor(points, bounds=True)
+    there = [struct.unpack('<3f', struct.pack('<3f', *p)) for p in risen + points[20:]]
+    s.root['accessors'][position].update(
+        {'min': [min(p[c] for p in there) for c in range(3)], 'max': [max(p[c] for p in there) for c in range(3)], 'sparse': {
+            'count': 20, 'indices': {'bufferView': s.view(bytes(range(20))), 'componentType': UBYTE},
+            'values': {'bufferView': s.view(b''.join(struct.pack('<3f', *p) for p in risen))}}})
+    mirrored = s.add('meshes', {'primitives': [{'attributes': {'POSITION': position, 'NORMAL': s.accessor(normals), 'TANGENT': s.accessor(along, kind='VEC4'),
+                                                               'TEXCOORD_0': s.accessor(uvs, kind='VEC2')},
+                                                'indices': s.accessor(corners, USHORT, 'SCALAR', padded=False)}]})
+    s.node(mesh=mirrored, translation=[0, 0, 4])
+    s.root['scenes'].append({'nodes': [s.node(root=False, mesh=mirrored, scale=[-1, 1, 1])]})
+    return s
+
+
+def seamed(n=24, m=12):
+    """A skinned ring with a morph target beside, of two primitives that meet but for rounding, as some exporters write them."""
+    s = Scene()
+    points, normals, along, uvs, corners = ring(n, m)
+    target = {'POSITION': s.accessor([(0.0, 0.0, 0.3 * math.sin(4 * p[0])) for p in points], bounds=True),
+              'NORMAL': s.accessor([(0.05, 0.0, 0.0)] * len(points)), 'TANGENT': s.accessor([(0.0, 0.01, 0.0)] * len(points))}
+    share = [max(0.0, min(1.0, 0.5 + p[0] / 2)) for p in points]
+    skin = {'JOINTS_0': s.accessor([(0, 1 if w else 0, 0, 0) for w in share], UBYTE, 'VEC4'),
+            'WEIGHTS_0': s.accessor([(1 - w, w, 0.0, 0.0) for w in share], kind='VEC4')}
+    other = {'NORMAL': s.accessor(normals), 'TANGENT': s.accessor(along, kind='VEC4'), 'TEXCOORD_0': s.accessor(uvs, kind='VEC2')}
+    half = len(corners) // 2
+    primitives = []
+    for part, shift in ((corners[:half], 0.0), (corners[half:], 2e-5)):
+        place = s.accessor([tuple(c + shift for c in p) for p in points], bounds=True)
+        primitives.append({'attributes': {'POSITION': place, **other, **skin}, 'targets': [target], 'indices': s.accessor(part, UINT, 'SCALAR', padded=False)})
+    mesh = s.add('meshes', {'weights': [0.2], 'primitives': primitives})
+    tip = s.node(root=False, translation=[1, 0, 0])
+    base = s.node(children=[tip])
+    inverse = s.accessor([[1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1], [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -1, 0, 0, 1]], kind='MAT4')
+    node = s.node(mesh=mesh, skin=s.add('skins', {'joints': [base, tip], 'inverseBindMatrices': inverse, 'skeleton': base}))
+    times = s.accessor([0.0, 1.0], kind='SCALAR', bounds=True)
+    turns = s.accessor([(0, 0, 0, 1), (math.sin(0.5), 0, 0, math.cos(0.5))], kind='VEC4')
+    s.add('animations', {'samplers': [{'input': times, 'output': turns},
+                                      {'input': times, 'output': s.accessor([0.0, 1.0], kind='SCALAR'), 'interpolation': 'STEP'}],
+                         'channels': [{'sampler': 0, 'target': {'node': tip, 'path': 'rotation'}}, {'sampler': 1, 'target': {'node': node, 'path': 'weights'}}]})
+    return s
+
+
+def in_two_files(s, name):
+    """The scene's views in turn in two files beside it: its text, and the files by name."""
+    root = json.loads(json.dumps(s.root))
+    parts = [bytearray(), bytearray()]
+    for i, view in enumerate(root['bufferViews']):
+        part = parts[i % 2]
+        part += bytes(-len(part) % 4)
+        data = s.bin[view['byteOffset']:view['byteOffset'] + view['byteLength']]
+        view.update({'buffer': i % 2, 'byteOffset': len(part)})
+        part += data
+    root['buffers'] = [{'uri': f'{name}%20{i}.bin', 'byteLength': len(part)} for i, part in enumerate(parts)]
+    return json.dumps(root).encode(), {f'{name} {i}.bin': bytes(part) for i, part in enumerate(parts)}
+
+
+def values(root, data, number):
+    """All values of an accessor as they are stored, sparse or not, of a GLB."""
+    a = root['accessors'][number]
+    width, letter = WIDTHS[a['type']], FORMATS[a['componentType']]
+    size = struct.calcsize(f'<{width}{letter}')
+
+    def rows(view, offset, count, size, form):
+        v = root['bufferViews'][view]
+        at = v.get('byteOffset', 0) + offset
+        return [struct.unpack_from(form, data, at + i * v.get('byteStride', size)) for i in range(count)]
+    out = rows(a['bufferView'], a.get('byteOffset', 0), a['count'], size, f'<{width}{letter}') if 'bufferView' in a else [(0,) * width] * a['count']
+    if 'sparse' in a:
+        sparse = a['sparse']
+        kind = FORMATS[sparse['indices']['componentType']]
+        at = rows(sparse['indices']['bufferView'], sparse['indices'].get('byteOffset', 0), sparse['count'], struct.calcsize('<' + kind), '<' + kind)
+        for (i,), row in zip(at, rows(sparse['values']['bufferView'], sparse['values'].get('byteOffset', 0), sparse['count'], size, f'<{width}{letter}')):
+            out[i] = row
+    return out
+
+
+def triangles(root, data, primitive):
+    """The triangles of a primitive of any mode, each as what its corners have, least corner first; those that name a vertex twice left out."""
+    columns = [values(root, data, primitive['attributes'][name]) for name in sorted(primitive['attributes'])]
+    for target in primitive.get('targets', []):
+        columns += [values(root, data, target[name]) for name in sorted(target)]
+    corners = [i for i, in values(root, data, primitive['indices'])] if 'indices' in primitive else list(range(len(columns[0])))
+    mode = primitive.get('mode', 4)
+    if mode == 4:
+        named = [tuple(corners[i:i + 3]) for i in range(0, len(corners) - 2, 3)]
+    elif mode == 5:
+        named = [tuple(corners[i:i + 3]) if i % 2 == 0 else (corners[i + 1], corners[i], corners[i + 2]) for i in range(len(corners) - 2)]
+    else:
+        named = [(corners[0], corners[i], corners[i + 1]) for i in range(1, len(corners) - 1)]
+    out = []
+    for t in named:
+        if len(set(t)) == 3:
+            full = [tuple(column[i] for column in columns) for i in t]
+            least = full.index(min(full))
+            out.append((full[least:] + full[:least]))
+    return sorted(out)
+
+
 def write_all(folder):
     """Every scene as a file; the names of the scenes."""
     made = {'skinned.glb': skinned().glb(), 'morphing.glb': morphing().glb(), 'assembly.glb': assembly().glb(), 'embedded.gltf': assembly(3).gltf(),
-            'quantised.glb': quantised().glb(), 'instanced.glb': instanced_on_gpu().glb(), 'crowded.glb': crowded().glb()}
-    text, files = textured('outside')
-    made['textured.gltf'] = text
-    for name, data in {**made, **files}.items():
+            'quantised.glb': quantised().glb(), 'instanced.glb': instanced_on_gpu().glb(), 'crowded.glb': crowded().glb(),
+            'shapes.glb': shapes().glb(), 'seamed.glb': seamed().glb()}
+    made['textured.gltf'], files = textured('outside')
+    made['parted.gltf'], more = in_two_files(seamed(12), 'parted')
+    for name, data in {**made, **files, **more}.items():
         (folder / name).write_bytes(data)
     return list(made)

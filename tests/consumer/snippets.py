@@ -2,7 +2,8 @@
 # SPDX-FileCopyrightText: 2026 The vsplit authors
 # SPDX-License-Identifier: MIT
 """snippets.py ROOT: every C++ block of README.md and docs/*.md stands, word for word, in a program of docs/examples, which
-the other tests of this folder compile and run. "// ..." in a block stands for lines left out."""
+the other tests of this folder compile and run. "// ..." in a block stands for lines left out. And every test that docs/gltf.md
+names is there: titles in quotes (their beginnings), functions and scenes in the last column of its tables."""
 import pathlib
 import re
 import sys
@@ -37,5 +38,24 @@ for page in pages:
             print(f"{page.relative_to(root)}:{line}: this block is in no program of docs/examples")
 if not found or not programs:
     sys.exit("no C++ block, or no program, was found")
-print(f"{found} blocks, {len(programs)} programs")
+titles = [t for path in (root / "tests/unit").glob("*.cpp") for t in re.findall(r'TEST_CASE\(\s*"([^"]+)"', path.read_text())]
+python = "".join(path.read_text() for path in (root / "tests/cli").glob("*.py"))
+named = 0
+for row in re.findall(r"^\| (?!---|feature)(.*) \|$", (root / "docs/gltf.md").read_text(), re.M):
+    last = row.split(" | ")[-1]
+    for title in re.findall(r'"([^"]+)"', last):
+        named += 1
+        if not any(t.startswith(title) for t in titles):
+            wrong += 1
+            print(f'docs/gltf.md names the test "{title}", which is not there')
+    for name in re.findall(r"`(\w+)`", last):
+        if not name.startswith("test_") and "all scenes" not in last and "with `" not in last:
+            continue
+        named += 1
+        if f"def {name}(" not in python and f"'{name}." not in python:
+            wrong += 1
+            print(f"docs/gltf.md names {name}, which is not there")
+if not named:
+    sys.exit("docs/gltf.md names no test")
+print(f"{found} blocks, {len(programs)} programs, {named} tests named")
 sys.exit(1 if wrong else 0)

@@ -198,6 +198,44 @@ TEST_CASE("Attributes: a texture stays where it is, and the charts keep their sh
             REQUIRE((tenth.groups[t] == 0 ? uv.values[2 * v] <= 0.4801f : uv.values[2 * v] >= 0.4999f));
 }
 
+TEST_CASE("Attributes: colours, joints, morph offsets and custom values stay where they were") {
+    Mesh mesh = make_skinned_tube(96, 80);
+    mesh.attributes.push_back({"_HEAT", Semantic::kOther, 1, {}});
+    for (const Float3& p : mesh.positions) mesh.attributes.back().values.push_back(100 * p.z);
+    auto result = bake::collapse(mesh, {});
+    REQUIRE(result.ok());
+    const Mesh tenth = cut(result->mesh, level_for_triangles(result->mesh, mesh.triangles.size() / 10));
+    double colour = 0, tangent = 1, weight = 0, offset = 0, heat = 0;
+    for (std::size_t v = 0; v < tenth.positions.size(); ++v) {
+        const auto value = [&](std::size_t attribute, std::size_t component) {
+            const Attribute& a = tenth.attributes[attribute];
+            return double(a.values[a.components * v + component]);
+        };
+        const Float3& p = tenth.positions[v];
+        const double r = std::hypot(p.x, p.y), z = double(p.z);
+        tangent = std::min(tangent, (value(1, 1) * double(p.x) - value(1, 0) * double(p.y)) / r);
+        colour = std::max({colour, std::abs(value(3, 0) - (0.5 + 0.5 * double(p.x) / r)),
+                           std::abs(value(3, 1) - z / 4), std::abs(value(3, 2) - 0.25)});
+        offset = std::max(offset, std::abs(value(6, 0) - 0.1 * z));
+        heat = std::max(heat, std::abs(value(7, 0) - 100 * z));
+        // Joints are of the input's: the root in one place, one of the others by height in another.
+        double root = 0;
+        for (std::size_t k = 0; k < 4; ++k) {
+            const double joint = value(4, k);
+            REQUIRE((joint >= 0 && joint <= 4 && joint == std::floor(joint)));
+            if (joint == 0) root += value(5, k);
+            if (value(5, k) > 0.1 && joint > 0) REQUIRE(std::abs(joint - (1 + std::floor(z * 3 / 4))) <= 1);
+        }
+        weight = std::max(weight, std::abs(root - (1 - z / 4.5)));
+    }
+    CAPTURE(colour, tangent, weight, offset, heat);
+    REQUIRE(colour < 0.05);
+    REQUIRE(tangent > 0.98);
+    REQUIRE(weight < 0.02);
+    REQUIRE(offset < 0.005);
+    REQUIRE(heat < 5);
+}
+
 TEST_CASE("Attributes: the same for any number of threads, with either cost") {
     for (const bake::Cost cost : {bake::Cost::kQuadric, bake::Cost::kPaper}) {
         const Mesh mesh =

@@ -9,7 +9,7 @@
 #include <random>
 
 #include "family.hpp"
-#include "gltf_document.hpp"
+#include "gltf_scene.hpp"
 #include "vsplit/bake/gltf.hpp"
 
 using namespace vsplit;
@@ -261,4 +261,65 @@ TEST_CASE("EXT_meshopt_compression: absurd counts, unknown modes and broken stre
             .glb(),
         "", {Weld::kNone, "", 1u << 20});
     CHECK(out.ok());
+}
+
+TEST_CASE("integers come out of Draco as they went in") {
+    // Normals all around, so that none is what its neighbours foretell.
+    GltfDocument d;
+    const Sheet sheet(8);
+    const std::size_t n = sheet.vertices;
+    std::vector<std::int16_t> places;
+    std::vector<std::int8_t> normals, tangents;
+    std::vector<std::uint16_t> uvs;
+    std::vector<std::uint8_t> colours;
+    for (std::size_t v = 0; v < n; ++v) {
+        const float a = 0.7f * float(v), z = std::cos(0.31f * float(v)), r = std::sqrt(1 - z * z);
+        for (std::size_t c = 0; c < 3; ++c)
+            places.push_back(std::int16_t(std::lround(4000 * sheet.positions[3 * v + c])));
+        places.push_back(0);  // elements begin at multiples of four
+        for (const float x : {r * std::cos(a), r * std::sin(a), z, 0.0f})
+            normals.push_back(std::int8_t(std::lround(127 * x)));
+        for (const float x : {-std::sin(a), std::cos(a), 0.0f, v % 2 == 0 ? 1.0f : -1.0f})
+            tangents.push_back(std::int8_t(std::lround(127 * x)));
+        for (std::size_t c = 0; c < 2; ++c)
+            uvs.push_back(std::uint16_t(std::lround(65535 * sheet.uvs[2 * v + c])));
+        for (const std::size_t x : {v, 255 - v, 7 * v % 256, std::size_t{255}})
+            colours.push_back(std::uint8_t(x));
+    }
+    const auto with_stride = [&](std::size_t accessor, int stride) {
+        d.root["bufferViews"][d.root["accessors"][accessor]["bufferView"].get<std::size_t>()]["byteStride"] =
+            stride;
+        return accessor;
+    };
+    const json normalised = {{"normalized", true}};
+    const std::size_t position = with_stride(d.accessor(places, 5122, "VEC3", n), 8);
+    d.root["accessors"][position].update({{"min", {0, 0, 0}}, {"max", {4000, 4000, 1000}}});
+    const json attributes = {{"POSITION", position},
+                             {"NORMAL", with_stride(d.accessor(normals, 5120, "VEC3", n, normalised), 4)},
+                             {"TANGENT", d.accessor(tangents, 5120, "VEC4", n, normalised)},
+                             {"TEXCOORD_0", d.accessor(uvs, 5123, "VEC2", n, normalised)},
+                             {"COLOR_0", d.accessor(colours, 5121, "VEC4", n, normalised)}};
+    d.scene_of({{"attributes", attributes}, {"indices", d.shorts(sheet.corners)}});
+    d.root["extensionsUsed"] = d.root["extensionsRequired"] = {"KHR_mesh_quantization"};
+    const bake::Scene scene = scene_of(d.glb());
+    bake::SceneFormat format;
+    format.draco = true;
+    const bake::Scene back = scene_of(encoded(scene, levels_of(scene, 1), format));
+    const auto rows = [](const Mesh& mesh) {
+        std::vector<std::vector<float>> all;
+        for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+            std::vector<float> row{mesh.positions[v].x, mesh.positions[v].y, mesh.positions[v].z};
+            for (const Attribute& a : mesh.attributes)
+                row.insert(row.end(), a.values.begin() + std::ptrdiff_t(a.components * v),
+                           a.values.begin() + std::ptrdiff_t(a.components * (v + 1)));
+            all.push_back(row);
+        }
+        std::sort(all.begin(), all.end());
+        return all;
+    };
+    const auto before = rows(scene.mesh), after = rows(back.mesh);
+    REQUIRE(before.size() == after.size());
+    for (std::size_t v = 0; v < before.size(); ++v)
+        for (std::size_t c = 0; c < before[v].size(); ++c)
+            REQUIRE(after[v][c] == Approx(before[v][c]).margin(1e-6));
 }

@@ -254,6 +254,41 @@ TEST_CASE("the union of attributes is limited, not only what the file stores") {
     REQUIRE(parse_scene(d.glb(), "", options).ok());
 }
 
+TEST_CASE("levels of MSFT_lod in the input: the finest is the scene, the others are emptied") {
+    const RichScene rich;
+    const Scene scene = scene_of(rich.document.glb());
+    const auto chain = encoded(scene, levels_of(scene, 3));
+    REQUIRE(json_of_glb(chain)["extensionsUsed"].dump().find("MSFT_lod") != std::string::npos);
+    const Scene back = scene_of(chain);
+    REQUIRE(back.mesh.triangles.size() == scene.mesh.triangles.size());
+    REQUIRE(back.mesh.attributes.size() == scene.mesh.attributes.size());
+    // Written with one level, there are none of the old ones; with two, the new one's alone.
+    const json single = json_of_glb(encoded(back, levels_of(back, 1)));
+    REQUIRE(single["extensionsUsed"].dump().find("MSFT_lod") == std::string::npos);
+    for (const json& node : single["nodes"])
+        REQUIRE((!node.contains("extensions") || !node["extensions"].contains("MSFT_lod")));
+    std::size_t shown = 0;
+    for (const json& node : single["nodes"]) shown += node.contains("mesh");
+    REQUIRE(shown == 3);
+    const json twice = json_of_glb(encoded(back, levels_of(back, 2)));
+    for (const json& node : twice["nodes"])
+        if (node.contains("extensions") && node["extensions"].contains("MSFT_lod"))
+            REQUIRE(node["extensions"]["MSFT_lod"]["ids"].size() == 1);
+    // Of materials it is not ours.
+    GltfDocument lods;
+    const Sheet sheet;
+    const std::size_t position = lods.floats(sheet.positions);
+    lods.root["accessors"][position].update({{"min", {0, 0, 0}}, {"max", {1, 1, 0.25}}});
+    lods.scene_of(
+        {{"attributes", {{"POSITION", position}}}, {"indices", lods.shorts(sheet.corners)}, {"material", 0}});
+    lods.root["materials"] = {{{"extensions", {{"MSFT_lod", {{"ids", {1}}}}}}}, {{"name", "far"}}};
+    lods.root["extensionsUsed"] = {"MSFT_lod"};
+    const Scene painted = scene_of(lods.glb());
+    const json kept = json_of_glb(encoded(painted, levels_of(painted, 1)));
+    REQUIRE(kept["materials"] == lods.root["materials"]);
+    REQUIRE(kept["extensionsUsed"] == json({"MSFT_lod"}));
+}
+
 TEST_CASE("painted weights come from a channel") {
     const RichScene rich;
     GltfOptions options;

@@ -66,6 +66,10 @@ struct CollapseOptions {
     /// Vertices of different parts never share a point, even if their positions are the same: empty, or one
     /// number per vertex. Only meshes with attributes or groups are asked for shared points at all.
     std::vector<std::uint32_t> part_of{};
+    /// Boundary edges whose ends are at most so many diagonals of the mesh (of its part) from another's
+    /// collapse as if they were one, and come apart in the last splits: 0 turns it off. Only in meshes with
+    /// attributes or groups.
+    double stitch = 2e-4;
     /// Poses besides the bind pose: what the surface departs from the posed input is counted where it is more
     /// than in the bind pose, and recorded errors are the largest of all poses. For meshes with attributes;
     /// cost `paper` is priced without. `set_of` must be empty or have one number per vertex.
@@ -91,6 +95,7 @@ struct CollapseReport {
     /// With two corners at one point: only the full mesh has them, by a last split.
     std::uint64_t degenerate_triangles = 0;
     std::uint64_t duplicate_triangles = 0;  ///< Same three vertices as another, either way round: follow it.
+    std::uint64_t stitched_vertices = 0;    ///< On boundaries that collapse as one; see `stitch`.
     std::uint64_t components_vanished = 0;  ///< Left out of the base mesh; one split brings each back.
     std::uint64_t fixed_vertices =
         0;  ///< Non-manifold corners, locked, or of infinite weight: never removed.
