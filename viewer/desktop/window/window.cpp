@@ -21,6 +21,8 @@ namespace {
 constexpr double kSettle = 0.25;  // seconds without motion until the full picture
 /// So many triangles look the same whether light falls on vertices or on pixels.
 constexpr std::size_t kSmoothEnough = 20000;
+/// Fewer triangles save nothing that is seen: presenting a picture takes longer than drawing these.
+constexpr double kLeastBudget = 12000;
 constexpr double kFrame = 0.025;  // seconds that a moving picture is to take: 30 a second with room to spare
 
 /// The trackball, but for what belongs to panel, brush and sliders.
@@ -323,7 +325,7 @@ void StudioWindow::draw() {
     // Towards what fits in a frame: at once if it took longer, a little at a time if there is room.
     if (shown_coarse_ || took > kFrame) {
         const double fits = std::clamp(kFrame / took, 0.5, 1.5);
-        budget_ = std::clamp(budget_ * (fits < 1 ? fits : 0.8 + 0.2 * fits), 4000.0, 4e6);
+        budget_ = std::clamp(budget_ * (fits < 1 ? fits : 0.8 + 0.2 * fits), kLeastBudget, 4e6);
     }
 }
 
