@@ -137,6 +137,7 @@ Result<CollapseResult> collapse(const Mesh& mesh, const CollapseOptions& options
             points.corners = mesh.triangles;
         }
         if (share > 0) stitched = stitch_borders(points, share);
+        if (plain && stitched.empty()) points = {};
         extras.wants_births = !stitched.empty();
         Mesh met;  // the input as it is stitched
         if (!stitched.empty() && !plain) {

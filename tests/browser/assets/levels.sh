@@ -21,7 +21,8 @@ for file in "$@"; do
   done
   said=$(render --engine babylon --out "$out/$name-lod.png" "$out/$name-msft.glb") || status=1
   echo "$said"
-  # Two commas: three levels.
-  grep -q 'coarsest first: [0-9]*, [0-9]*, [0-9]*$' <<<"$said" || { echo "$name: not every level was loaded"; status=1; }
+  # Three levels, each with more triangles than the coarser one.
+  read -r a b c <<<"$(sed -n 's/.*coarsest first: \([0-9]*\), \([0-9]*\), \([0-9]*\)$/\1 \2 \3/p' <<<"$said")"
+  [ -n "$c" ] && [ "$a" -lt "$b" ] && [ "$b" -lt "$c" ] || { echo "$name: not every level was loaded"; status=1; }
 done
 exit $status
