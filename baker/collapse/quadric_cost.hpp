@@ -97,6 +97,7 @@ class EdgeQuadric {
             difference[i] = b - a;
         }
         trace_ = trace(sum_);
+        extra_ = extra(u) + extra(v);
         pull_ = options.regularisation * trace_ + 1e-30;
         // Keeping the volume: (gu + gv) (x - middle) = (gv - gu) half, softly (Lindstrom and Turk 1998,
         // section 4.1).
@@ -156,16 +157,24 @@ class EdgeQuadric {
     /// Of shapes stored in floats, a cost below this says little: the parts of large triangles cancel out.
     VSPLIT_INLINE Real noise() const { return 1e-7 * length2(half_) * trace_; }
 
-    /// The cost in the queue: never negative, and among the free ones short edges come first.
+    /// The cost in the queue: never negative, and among the free ones short edges come first. What weighs
+    /// more than 1 is taken to bend a little at least, or weights would not keep what is flat.
     VSPLIT_INLINE Real price(Real cost) const {
         const Real edge2 = length2(half_);
-        return select(cost > 0.0, cost, cost * 0.0) + edge2 * (4e-14 * trace_ + 1e-34);
+        return select(cost > 0.0, cost, cost * 0.0) + edge2 * (4e-14 * trace_ + kLeastBend * extra_ + 1e-34);
     }
 
   private:
+    /// Squared distance to the planes over that along the edge's half.
+    static constexpr double kLeastBend = 1e-6;
+
+    VSPLIT_INLINE static Real extra(const Shape<Real>& of) {
+        return select(of.weight > 1.0, of.weight - 1.0, of.weight * 0.0) * trace(of.quadric);
+    }
+
     SymmetricOf<Real> sum_;
     Vec3<Real> middle_, half_, volume_, rhs_;
-    Real volume_rhs_, volume_scale_, constant_, trace_, pull_;
+    Real volume_rhs_, volume_scale_, constant_, trace_, extra_, pull_;
 };
 
 /// A price that stands for one lost in rounding.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstdio>
+#include <limits>
 #include <numeric>
 #include <tuple>
 
@@ -12,9 +14,11 @@
 namespace vsplit::bake {
 namespace {
 
-/// Weights are searched as powers of two.
-constexpr double kLeastExponent = -40, kMostExponent = 60;
+/// Weights are searched as powers of two. More than the most makes no difference but to be infinite.
+constexpr double kLeastExponent = -40, kMostExponent = 20;
 constexpr std::size_t kMaxBakes = 40;
+/// Where the share jumps over what is asked, weights this near to the jump are tried, too.
+constexpr double kProbes[] = {0.0005, 0.001, 0.002, 0.004, 0.008, 0.016, 0.032, 0.064};
 
 std::tuple<std::uint32_t, std::uint32_t, std::uint32_t> bits(const Float3& p) {
     // 0 and -0 are the same place.
@@ -59,6 +63,7 @@ struct Search {
     double automatic;
     std::vector<char> used;  ///< By a triangle: others are not in the record.
     std::size_t bakes = 0;
+    std::uint32_t least_triangles = 0;  ///< Of the base mesh, without what the search weighs.
 
     std::size_t size_of(std::size_t number) const {
         std::size_t count = 0;
@@ -66,8 +71,14 @@ struct Search {
         return count;
     }
 
+    struct Kept {
+        double share;
+        std::uint32_t vertices;  ///< Of the whole level.
+        bool at_level;           ///< Not if even the base mesh has more triangles than the level is to have.
+    };
+
     /// `rough`: of the sequence before outliers are put off, which takes a third of the time.
-    Result<double> share(std::size_t number, double weight, double ratio, bool rough = false) {
+    Result<Kept> share(std::size_t number, double weight, double ratio, bool rough = false) {
         marks.regions[number - 1].weight = weight;
         Mesh painted = mesh;
         painted.weights = weights_of(marks, automatic);
@@ -80,8 +91,12 @@ struct Search {
         const std::vector<std::uint32_t> origins = record_origins(mesh, record);
         const auto wanted = std::uint64_t(std::llround(ratio * double(record.triangles.size())));
         const std::size_t level = level_for_triangles(record, wanted);
+        // The first record is that of weight 1: what it does not reach, none does.
+        if (bakes == 1) least_triangles = record.base_triangles;
         const auto kept = double(region_vertices_at(record, origins, marks, number, level));
-        return kept / double(region_vertices_at(record, origins, marks, number, record.splits.size()));
+        return Kept{kept / double(region_vertices_at(record, origins, marks, number, record.splits.size())),
+                    vertices_at(record, level),
+                    record.base_triangles <= std::max<std::uint64_t>(wanted, least_triangles)};
     }
 
     Result<KeepResult> run(std::size_t number, const Keep& wish);
@@ -94,7 +109,8 @@ Result<KeepResult> Search::run(std::size_t number, const Keep& wish) {
     // What is put off moves shares a little: the rough weight is nearly that which is sought.
     auto rough = run(number, wish, 0, 1, true);
     if (!rough) return rough;
-    auto found = run(number, wish, std::log2(rough->weight), 0.25, false);
+    const double start = std::isinf(rough->weight) ? kMostExponent : std::log2(rough->weight);
+    auto found = run(number, wish, start, 0.25, false);
     if (found) found->bakes += rough->bakes;
     return found;
 }
@@ -108,16 +124,20 @@ Result<KeepResult> Search::run(std::size_t number, const Keep& wish, double star
         const double weight = std::exp2(exponent);
         auto kept = share(number, weight, wish.ratio, rough);
         if (!kept) return kept.error();
-        const double off = *kept - wish.share;
+        // What keeps so much that the level cannot be had weighs too much.
+        if (!kept->at_level) return 1.0;
+        const double off = kept->share - wish.share;
         // Of equals the later is nearer to the edge between too little and too much.
         if (std::abs(off) <= best_miss) {
             best_miss = std::abs(off);
             best.weight = weight;
-            best.share = *kept;
+            best.share = kept->share;
+            best.level_vertices = kept->vertices;
         }
         return off;
     };
-    const double enough = std::max(0.002, 0.5 / double(std::max<std::size_t>(size_of(number), 1)));
+    const double size = double(std::max<std::size_t>(size_of(number), 1));
+    const double enough = std::max(0.002, 0.5 / size);
     const auto finish = [&]() {
         marks.regions[number - 1].weight = best.weight;
         best.bakes = bakes - before;
@@ -141,6 +161,11 @@ Result<KeepResult> Search::run(std::size_t number, const Keep& wish, double star
         at_to = miss(to);
         if (!at_to) return at_to.error();
     }
+    if (best_miss > enough && *at_high < 0) {
+        // A finite weight was not enough.
+        if (const auto off = miss(std::numeric_limits<double>::infinity()); !off) return off.error();
+        return finish();
+    }
     while (best_miss > enough && bakes - before < kMaxBakes && high - low > 1e-4 &&
            (*at_low > 0) != (*at_high > 0)) {
         const double middle = 0.5 * (low + high);
@@ -149,6 +174,13 @@ Result<KeepResult> Search::run(std::size_t number, const Keep& wish, double star
         (*at_middle > 0 ? high : low) = middle;
         (*at_middle > 0 ? at_high : at_low) = *at_middle;
     }
+    if ((*at_low > 0) == (*at_high > 0)) return finish();
+    // The share is not quite monotonic: what jumps here may be met beside it.
+    for (const double probe : kProbes)
+        for (const double exponent : {low - probe, high + probe}) {
+            if (best_miss <= std::max(0.009, 0.5 / size) || rough) return finish();
+            if (const auto off = miss(exponent); !off) return off.error();
+        }
     return finish();
 }
 
@@ -207,7 +239,15 @@ Result<std::vector<KeepResult>> find_weights(const Mesh& mesh, Marks& marks, std
         if (std::count(numbers.begin(), numbers.end(), numbers.back()) > 1)
             return refuse("region " + wish.region + " is to keep two things");
     }
-    const auto percent = [](double share) { return std::to_string(std::lround(1000 * share) / 10) + "%"; };
+    const auto percent = [](double share) {
+        const long tenths = std::lround(1000 * share);
+        return std::to_string(tenths / 10) + (tenths % 10 ? "." + std::to_string(tenths % 10) : "") + " %";
+    };
+    const auto number = [](double weight) {
+        char text[32];
+        std::snprintf(text, sizeof text, "%.4g", weight);
+        return std::string(text);
+    };
     std::vector<KeepResult> results(wishes.size());
     // One region's weight moves what others keep a little: in turns, until all are met.
     for (int turn = 0; turn < (wishes.size() > 1 ? 4 : 1); ++turn) {
@@ -216,8 +256,9 @@ Result<std::vector<KeepResult>> find_weights(const Mesh& mesh, Marks& marks, std
             if (turn > 0) {
                 auto now = search.share(numbers[i], results[i].weight, wishes[i].ratio);
                 if (!now) return now.error();
-                results[i].share = *now;
-                if (std::abs(*now - wishes[i].share) <= 0.008) continue;
+                results[i].share = now->share;
+                results[i].level_vertices = now->vertices;
+                if (now->at_level && std::abs(now->share - wishes[i].share) <= 0.008) continue;
             }
             auto result = search.run(numbers[i], wishes[i]);
             if (!result) return result.error();
@@ -232,7 +273,9 @@ Result<std::vector<KeepResult>> find_weights(const Mesh& mesh, Marks& marks, std
             std::max(0.01, 1.0 / double(search.size_of(numbers[i]))))
             return refuse("no weight keeps " + percent(wishes[i].share) + " of region " + wishes[i].region +
                           " at " + percent(wishes[i].ratio) + " of the triangles: the nearest is " +
-                          percent(results[i].share));
+                          percent(results[i].share) + ", by weight " + number(results[i].weight) +
+                          "; the region has " + std::to_string(search.size_of(numbers[i])) +
+                          " vertices, the whole level " + std::to_string(results[i].level_vertices));
     return results;
 }
 

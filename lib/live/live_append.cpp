@@ -3,20 +3,22 @@
 //
 // LiveBuffers: taking splits.
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
-#include <optional>
 #include <utility>
 
 #include "../bytes/large_pages.hpp"
 #include "extend.hpp"
 #include "live_codes.hpp"
+#include "prefetch.hpp"
 #include "vsplit/live_buffers.hpp"
 
 namespace vsplit {
 namespace {
 
-constexpr std::int32_t kMostShort = 32767, kNotShort = 1 << 30;
+constexpr std::int32_t kMostShort = 32767;
+constexpr std::size_t kMovesAhead = 16;
 
 }  // namespace
 
@@ -103,16 +105,28 @@ bool same_bits(const Float3& a, const Float3& b) {
     return (flip(a.x, b.x) | flip(a.y, b.y) | flip(a.z, b.z)) == 0;
 }
 
-/// The grid's point that is the place bit by bit, if there is one.
-std::optional<std::array<std::int32_t, 3>> on_grid(const PlaceGrid& grid, const Float3& place) {
-    const double inverse = 1 / grid.step, far = std::max({std::abs(double(place.x) - grid.origin[0]),
-                                                          std::abs(double(place.y) - grid.origin[1]),
-                                                          std::abs(double(place.z) - grid.origin[2])});
-    if (!(far * inverse < kGridReach)) return {};
-    const std::array<std::int32_t, 3> at = grid_point(grid, place);
-    if (!same_bits(grid_place(grid, at), place)) return {};
-    return at;
-}
+/// The grid's points. A place is on it only bit by bit.
+class OnGrid {
+  public:
+    explicit OnGrid(const PlaceGrid& grid) : grid_(grid), inverse_(1 / grid.step) {}
+
+    /// The point nearest to a place, which must be on the grid.
+    std::array<std::int32_t, 3> point(const Float3& place) const {
+        return {grid_point(grid_.origin[0], inverse_, place.x),
+                grid_point(grid_.origin[1], inverse_, place.y),
+                grid_point(grid_.origin[2], inverse_, place.z)};
+    }
+    bool has(const Float3& place) const {
+        const double far = std::max({std::abs(double(place.x) - grid_.origin[0]),
+                                     std::abs(double(place.y) - grid_.origin[1]),
+                                     std::abs(double(place.z) - grid_.origin[2])});
+        return far * inverse_ < kGridReach && same_bits(grid_place(grid_, point(place)), place);
+    }
+
+  private:
+    PlaceGrid grid_;
+    double inverse_;
+};
 
 }  // namespace
 
@@ -126,6 +140,12 @@ void LiveBuffers::append_moves(const ProgressiveMesh& mesh) {
     const auto each = [&](std::size_t from, auto&& store) {
         for (std::size_t i = from; i < end; ++i) store(i, before[i - from]);
     };
+    // What is replaced lies anywhere: fetched ahead.
+    const auto fetch = [&](std::size_t i) {
+        if (i >= end) return;
+        const std::uint32_t was = before[i - begin], vertex = mesh.moves[i].vertex;
+        prefetch(was == kNever ? &mesh.positions[vertex].x : &mesh.moves[was].position.x, 3);
+    };
     const auto place_before = [&](std::size_t i, std::uint32_t was) {
         return was == kNever ? mesh.positions[mesh.moves[i].vertex] : mesh.moves[was].position;
     };
@@ -138,26 +158,32 @@ void LiveBuffers::append_moves(const ProgressiveMesh& mesh) {
     for (std::size_t a = 0; a < attributes_.size(); ++a) {
         const std::size_t n = attributes_[a].components;
         const std::vector<float>&born = mesh.attributes[a].values, &moved = mesh.moved_values[a];
+        attributes_[a].moved.resize(n * end);
+        std::uint32_t* const out = attributes_[a].moved.data();
         each(begin, [&](std::size_t i, std::uint32_t was) {
             const float* const old =
                 was == kNever ? &born[n * mesh.moves[i].vertex] : &moved[n * std::size_t{was}];
-            for (std::size_t k = 0; k < n; ++k)
-                attributes_[a].moved.push_back(flip(old[k], moved[n * i + k]));
+            for (std::size_t k = 0; k < n; ++k) out[n * i + k] = flip(old[k], moved[n * i + k]);
         });
     }
-    if (packed_)
-        each(begin, [&](std::size_t i, std::uint32_t was) {
-            if (!packed_) return;
-            const auto from = on_grid(grid_, place_before(i, was)),
-                       to = on_grid(grid_, mesh.moves[i].position);
-            std::array<std::int16_t, 3> step{};
-            for (std::size_t axis = 0; axis < 3 && packed_; ++axis) {
-                const std::int32_t by = from && to ? (*to)[axis] - (*from)[axis] : kNotShort;
-                packed_ = by >= -kMostShort && by <= kMostShort;
-                step[axis] = std::int16_t(by);
+    if (packed_) {
+        const OnGrid grid(grid_);
+        steps_.resize(end);
+        for (std::size_t i = begin; i < end && packed_; ++i) {
+            fetch(i + kMovesAhead);
+            const std::uint32_t was = before[i - begin];
+            const Float3 from = place_before(i, was), to = mesh.moves[i].position;
+            // Where an earlier move led was looked at then.
+            packed_ = grid.has(to) && (was != kNever || grid.has(from));
+            if (!packed_) break;
+            const std::array<std::int32_t, 3> a = grid.point(from), b = grid.point(to);
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                const std::int32_t by = b[axis] - a[axis];
+                packed_ = packed_ && by >= -kMostShort && by <= kMostShort;
+                steps_[i][axis] = std::int16_t(by);
             }
-            steps_.push_back(step);
-        });
+        }
+    }
     if (!packed_) {
         std::size_t from = begin;
         if (!steps_.empty()) {

@@ -21,6 +21,7 @@ constexpr std::size_t kAlways = 4;   // corners written without looking at how m
 constexpr std::size_t kChunk = 256;  // moves listed at a time
 
 constexpr std::size_t kVerticesAhead = 12;
+constexpr double kRounds = 6755399441055744;  // 1.5 * 2^52: a double next to it is a whole number
 
 /// Flips the bits in which `kComponents` (or, if that is 0, `components`) floats of each vertex differ before
 /// and after its move.
@@ -61,9 +62,10 @@ void step_places(std::span<const std::uint32_t> vertices, Float3* alive,
         if (i + kVerticesAhead < vertices.size()) prefetch(&alive[vertices[i + kVerticesAhead]].x, 3);
         float* const a = &alive[vertices[i]].x;
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            const std::int32_t by = steps[i][axis];
-            const std::int32_t at = grid_point(grid.origin[axis], inverse, a[axis]) + (kForward ? by : -by);
-            a[axis] = float(grid.origin[axis] + grid.step * at);
+            // Rounded by what a double cannot hold: whole numbers, without a way through integers.
+            const double at = ((double(a[axis]) - grid.origin[axis]) * inverse + kRounds) - kRounds;
+            const double by = steps[i][axis];
+            a[axis] = float(grid.origin[axis] + grid.step * (kForward ? at + by : at - by));
         }
     }
 }

@@ -309,6 +309,29 @@ class WindowTest(unittest.TestCase):
         self.key('ctrl+q', 'd')
         self.assertEqual(self.studio.wait(20), 0)
 
+    def test_both_panes_follow_a_stroke(self):
+        self.open()
+        self.key('Next', 'Next', 'Next', 'd')
+        time.sleep(0.7)
+        quarter = (WIDTH - PANEL) // 4
+        left, right = (PANEL + 20, 60, PANEL + 2 * quarter - 10, HEIGHT - 60), (PANEL + 2 * quarter + 10, 60, WIDTH - 20, HEIGHT - 60)
+        self.do('keydown', 'ctrl')
+        self.do('mousemove', PANEL + quarter - 40, HEIGHT // 2, 'mousedown', 1)
+        for i in range(1, 9):
+            self.do('mousemove', PANEL + quarter - 40 + 10 * i, HEIGHT // 2)
+            time.sleep(0.05)
+        # The button is still down.
+        self.wait(lambda: min(self.shot().like(ORANGE, left), self.shot().like(ORANGE, right)) > 100, 'the stroke is in both panes')
+        self.keep('14-both-panes')
+        during = self.shot().like(ORANGE, right)
+        self.do('mouseup', 1)
+        self.do('keyup', 'ctrl')
+        time.sleep(0.8)
+        after = self.shot().like(ORANGE, right)
+        self.assertAlmostEqual(during / after, 1, delta=0.1)
+        self.key('ctrl+q', 'd')
+        self.assertEqual(self.studio.wait(20), 0)
+
     def test_keep_and_keys(self):
         self.open()
         middle = (PANEL + (WIDTH - PANEL) // 2, HEIGHT // 2)

@@ -192,7 +192,9 @@ Json Runner::keep(const Json& step) {
         bake::find_weights(document_.source().mesh, marks, {&wish, 1}, document_.options(), host_.progress);
     if (!found) throw Fault{found.error()};
     document_.painting().region(region(step)).weight = found->front().weight;
-    return {{"weight", found->front().weight}, {"kept", found->front().share}};
+    // JSON has no infinity.
+    const double weight = found->front().weight;
+    return {{"weight", std::isinf(weight) ? Json("inf") : Json(weight)}, {"kept", found->front().share}};
 }
 
 Json Runner::weight(const Json& step) {

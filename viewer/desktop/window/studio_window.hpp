@@ -79,6 +79,8 @@ class StudioWindow {
     bool eye_outside() const;
     /// Draws only what the stroke has changed since the last picture, over it.
     void draw_stroke();
+    /// What a stroke changed in the right pane; false if nothing.
+    bool patch_right();
     void draw_at_full_level();
     bool in_left_pane(int x) const;
     int left_width() const;
@@ -132,8 +134,9 @@ class StudioWindow {
     int dragging_ = kNothing;  // a slider
     bool moving_ = false, question_ = false;
     double moved_at_ = 0;
-    double budget_ = 150000;  // triangles that a moving picture may have
-    bool patchable_ = false;  // the picture that is there can take a stroke's patches
+    double budget_ = 150000;          // triangles that a moving picture may have
+    bool patchable_ = false;          // the picture that is there can take a stroke's patches
+    std::vector<Rgb> right_colours_;  // as the right pane was drawn last, during a stroke
     bool shown_coarse_ = false, panel_stale_ = true;
     std::string message_;
 };

@@ -21,7 +21,9 @@ namespace {
 constexpr double kSettle = 0.25;  // seconds without motion until the full picture
 /// So many triangles look the same whether light falls on vertices or on pixels.
 constexpr std::size_t kSmoothEnough = 20000;
-constexpr double kFrame = 0.029;  // seconds that a moving picture may take
+/// Fewer triangles save nothing that is seen: presenting a picture takes longer than drawing these.
+constexpr double kLeastBudget = 12000;
+constexpr double kFrame = 0.025;  // seconds that a moving picture is to take: 30 a second with room to spare
 
 /// The trackball, but for what belongs to panel, brush and sliders.
 class Style : public vtkInteractorStyleTrackballCamera {
@@ -246,6 +248,7 @@ void StudioWindow::draw_stroke() {
         draw_at_full_level();
         patchable_ = look_.heat == Heat::kNone;
         document_->take_repainted();
+        if (split_) right_colours_ = level_picture(*document_, *right_.live, Heat::kNone).colours;
         return;
     }
     const std::vector<Triangle> triangles = document_->take_repainted();
@@ -253,18 +256,37 @@ void StudioWindow::draw_stroke() {
     if (triangles.empty()) return;
     left_.view->recolour(level_picture(*document_, *left_.live, Heat::kNone).colours);
     left_.view->patch(triangles);
-    left_.renderer->PreserveColorBufferOn();
-    left_.renderer->PreserveDepthBufferOn();
-    left_.caption->VisibilityOff();
-    for (vtkRenderer* other : {right_.renderer.Get(), sheet_renderer_.Get(), panel_renderer_.Get()})
-        other->SetDraw(false);
+    const bool right = split_ && patch_right();
+    for (Pane* pane : {&left_, &right_}) {
+        pane->renderer->PreserveColorBufferOn();
+        pane->renderer->PreserveDepthBufferOn();
+        pane->caption->VisibilityOff();
+    }
+    right_.renderer->SetDraw(right);
+    for (vtkRenderer* other : {sheet_renderer_.Get(), panel_renderer_.Get()}) other->SetDraw(false);
     window_->Render();
     sheet_renderer_->SetDraw(true);
     right_.renderer->SetDraw(split_);
-    left_.caption->VisibilityOn();
-    left_.renderer->PreserveColorBufferOff();
-    left_.renderer->PreserveDepthBufferOff();
-    left_.view->patch({});
+    for (Pane* pane : {&left_, &right_}) {
+        pane->caption->VisibilityOn();
+        pane->renderer->PreserveColorBufferOff();
+        pane->renderer->PreserveDepthBufferOff();
+        pane->view->patch({});
+    }
+}
+
+bool StudioWindow::patch_right() {
+    LevelPicture now = level_picture(*document_, *right_.live, Heat::kNone);
+    std::vector<Triangle> changed;
+    for (const Triangle& t : now.triangles)
+        if (std::any_of(t.begin(), t.end(),
+                        [&](std::uint32_t v) { return now.colours[v] != right_colours_[v]; }))
+            changed.push_back(t);
+    if (changed.empty()) return false;
+    right_.view->recolour(now.colours);
+    right_.view->patch(changed);
+    right_colours_ = std::move(now.colours);
+    return true;
 }
 
 void StudioWindow::draw_panel() {
@@ -300,9 +322,11 @@ void StudioWindow::draw() {
     if (!moving_) return;
     window_->WaitForCompletion();
     const double took = seconds_now() - start;
-    // Towards what fits in a frame, half way at a time.
-    if (shown_coarse_ || took > kFrame)
-        budget_ = std::clamp(budget_ * (0.5 + 0.5 * std::clamp(kFrame / took, 0.3, 2.0)), 4000.0, 4e6);
+    // Towards what fits in a frame: at once if it took longer, a little at a time if there is room.
+    if (shown_coarse_ || took > kFrame) {
+        const double fits = std::clamp(kFrame / took, 0.5, 1.5);
+        budget_ = std::clamp(budget_ * (fits < 1 ? fits : 0.8 + 0.2 * fits), kLeastBudget, 4e6);
+    }
 }
 
 void StudioWindow::move() {

@@ -98,9 +98,10 @@ std::size_t region_vertices_at(const ProgressiveMesh& record, std::span<const st
                                const Marks& marks, std::size_t number, std::size_t level);
 
 struct KeepResult {
-    double weight = 1;
-    double share = 0;       ///< What that weight keeps.
-    std::size_t bakes = 0;  ///< Records made to find it.
+    double weight = 1;                 ///< Infinite where no finite one keeps enough.
+    double share = 0;                  ///< What that weight keeps.
+    std::uint32_t level_vertices = 0;  ///< Of the whole level, with that weight.
+    std::size_t bakes = 0;             ///< Records made to find it.
 };
 
 /// The weights that keep what is asked, within 1 % (or a vertex, where that is more): each region's weight is
