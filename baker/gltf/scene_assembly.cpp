@@ -27,6 +27,21 @@ OrderedJson& primitives_of(OrderedJson& mesh) {
     return mesh["primitives"];
 }
 
+/// Inverse bind matrices of joints for places on `grid`: what a joint does to a vertex it then does to
+/// one that the grid has moved and scaled. Not finite where the product is beyond a float.
+std::vector<float> on_grid(std::vector<float> matrices, const Grid& grid) {
+    for (std::size_t j = 0; j + 16 <= matrices.size(); j += 16) {
+        float* m = matrices.data() + j;
+        for (std::size_t row = 0; row < 4; ++row) {
+            double moved = double(m[12 + row]);
+            for (std::size_t c = 0; c < 3; ++c) moved += double(m[4 * c + row]) * grid.offset[c];
+            for (std::size_t c = 0; c < 3; ++c) m[4 * c + row] = float(double(m[4 * c + row]) * grid.scale);
+            m[12 + row] = float(moved);
+        }
+    }
+    return matrices;
+}
+
 }  // namespace
 
 Status check_scene_levels(const Scene& scene, std::span<const GltfLevel> levels) {
@@ -110,6 +125,14 @@ void SceneAssembly::choose_grids(std::span<const GltfLevel> levels) {
         for (double& x : grid.offset) x = double(float(x));
         grid.scale = double(std::nextafter(float(grid.scale * (1 + 1e-6)), INFINITY));
     }
+    // An extent, or a matrix times it, may be beyond what a float holds: such meshes keep float places.
+    std::erase_if(grids, [](const auto& entry) { return !std::isfinite(entry.second.scale); });
+    for (std::size_t s = 0; s < skins; ++s)
+        if (const auto grid = grids.find(find(scene_.parts.size() + s)); grid != grids.end()) {
+            const std::vector<float> matrices = on_grid(scene_.document->inverse_bind[s], grid->second);
+            if (!std::all_of(matrices.begin(), matrices.end(), [](float x) { return std::isfinite(x); }))
+                grids.erase(grid);
+        }
     for (std::size_t p = 0; p < scene_.parts.size(); ++p)
         if (const auto grid = grids.find(find(p)); grid != grids.end())
             writer_.quantise(scene_.parts[p].mesh, grid->second);
@@ -123,7 +146,6 @@ void SceneAssembly::choose_grids(std::span<const GltfLevel> levels) {
     quantise_skins(by_skin);
 }
 
-/// What a joint does to a vertex it now does to one that the grid has moved and scaled.
 void SceneAssembly::quantise_skins(const std::map<std::size_t, Grid>& grids) {
     if (grids.empty()) return;
     OrderedJson& skins = root_["skins"];
@@ -138,18 +160,7 @@ void SceneAssembly::quantise_skins(const std::map<std::size_t, Grid>& grids) {
             old.erase(accessor->get<std::size_t>());
     for (const std::size_t accessor : old) drop_accessor(accessor);
     for (const auto& [s, grid] : grids) {
-        std::vector<float> matrices = scene_.document->inverse_bind[s];
-        for (std::size_t j = 0; j + 16 <= matrices.size(); j += 16) {
-            float* m = matrices.data() + j;
-            for (std::size_t row = 0; row < 4; ++row) {
-                double moved = double(m[12 + row]);
-                for (std::size_t c = 0; c < 3; ++c) moved += double(m[4 * c + row]) * grid.offset[c];
-                for (std::size_t c = 0; c < 3; ++c)
-                    m[4 * c + row] = float(double(m[4 * c + row]) * grid.scale);
-                m[12 + row] = float(moved);
-            }
-        }
-        skins[s]["inverseBindMatrices"] = sink_.add_matrices(matrices);
+        skins[s]["inverseBindMatrices"] = sink_.add_matrices(on_grid(scene_.document->inverse_bind[s], grid));
     }
 }
 

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: MIT
 #include "vsplit/mesh.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <string_view>
 
 namespace vsplit {
 
@@ -42,14 +44,17 @@ const char* attributes_fault(const std::vector<Attribute>& attributes, std::size
             return "there are not as many values of an attribute as vertices";
         for (const float value : attribute.values)
             if (!std::isfinite(value)) return "an attribute is not finite";
-        for (std::size_t j = 0; j < i; ++j)
-            if (attributes[j].name == attribute.name) return "two attributes have one name";
         const bool follows_joints = i > 0 && attributes[i - 1].semantic == Semantic::kJoints;
         if ((attribute.semantic == Semantic::kJointWeights) != follows_joints)
             return "joints and their weights do not follow each other";
     }
     if (!attributes.empty() && attributes.back().semantic == Semantic::kJoints)
         return "joints and their weights do not follow each other";
+    // Files may announce thousands.
+    std::vector<std::string_view> names;
+    for (const Attribute& attribute : attributes) names.push_back(attribute.name);
+    std::sort(names.begin(), names.end());
+    if (std::adjacent_find(names.begin(), names.end()) != names.end()) return "two attributes have one name";
     return nullptr;
 }
 

@@ -424,6 +424,31 @@ TEST_CASE("formats that do not go together, and levels of another scene, are ref
     REQUIRE(encode_scene(scene, levels).error().code == ErrorCode::kArgument);
 }
 
+TEST_CASE("a mesh wider than a float keeps its positions when quantised") {
+    const RichScene rich;
+    const Scene scene = scene_of(rich.document.glb());
+    auto levels = levels_of(scene, 1);
+    levels[0].mesh.attributes.clear();
+    levels[0].mesh.groups.clear();
+    SceneFormat format;
+    format.quantised = true;
+    const auto type_of_positions = [&] {
+        const auto glb = encode_levels(levels, format);
+        REQUIRE(glb.ok());
+        const json d = json_of_glb(*glb);
+        for (const json& node : d["nodes"])
+            if (node.contains("scale"))
+                for (const json& x : node["scale"]) REQUIRE(x.is_number());
+        return d["accessors"][d["meshes"][0]["primitives"][0]["attributes"]["POSITION"].get<std::size_t>()]
+                ["componentType"]
+                    .get<int>();
+    };
+    CHECK(type_of_positions() == 5123);
+    levels[0].mesh.positions.front().x = -3e38f;
+    levels[0].mesh.positions.back().x = 3e38f;
+    CHECK(type_of_positions() == 5126);
+}
+
 TEST_CASE("levels without a scene get one") {
     const RichScene rich;
     const Scene scene = scene_of(rich.document.glb());
