@@ -7,7 +7,10 @@
 export class Pace {
     private readonly fences: WebGLSync[] = [];
 
-    constructor(private readonly gl: WebGL2RenderingContext, private readonly ahead = 1) {}
+    constructor(private readonly gl: WebGL2RenderingContext, private readonly ahead = 1) {
+        // Fences of a context that was lost are never signalled.
+        for (const event of ['webglcontextlost', 'webglcontextrestored']) gl.canvas.addEventListener(event, () => { this.fences.length = 0; });
+    }
 
     /** Whether a frame may be drawn now. */
     free(): boolean {
