@@ -106,13 +106,13 @@ class WindowTest(unittest.TestCase):
             process.terminate()
             process.wait(20)
 
-    def open(self, file='whale.ply'):
-        self.studio = subprocess.Popen([VSPLIT, 'studio', file, '--size', f'{WIDTH}x{HEIGHT}'], cwd=self.folder,
+    def open(self, file='whale.ply', height=HEIGHT):
+        self.studio = subprocess.Popen([VSPLIT, 'studio', file, '--size', f'{WIDTH}x{height}'], cwd=self.folder,
                                        env=self.environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
         self.addCleanup(self.studio.stdout.close)
         self.addCleanup(self.stop, self.studio)
-        self.wait(lambda: self.shot().at(20, HEIGHT - 20) == (33, 38, 46), 'the window is there')
-        self.do('mousemove', PANEL + 20, HEIGHT - 60)
+        self.wait(lambda: self.shot().at(4, height - 4) == (33, 38, 46), 'the window is there')
+        self.do('mousemove', PANEL + 20, height - 60)
         time.sleep(0.5)
 
     def wait(self, condition, what, seconds=30):
@@ -172,6 +172,16 @@ class WindowTest(unittest.TestCase):
             if line[:1].isdigit():
                 counts[int(line.split()[0])] = counts.get(int(line.split()[0]), 0) + 1
         return counts
+
+    def test_all_controls_are_in_a_low_window(self):
+        self.open(height=500)
+        self.keep('15-low')
+        picture = self.shot()
+        # The panel ends with its last button, [Help], and a margin.
+        buttons = [y for y in range(500) if picture.at(20, y) == (58, 66, 78)]
+        self.assertTrue(440 < max(buttons) < 500, max(buttons))
+        self.click(130, max(buttons) - 3)
+        self.wait(lambda: self.shot().at(PANEL + (WIDTH - PANEL) // 2, 250) != picture.at(PANEL + (WIDTH - PANEL) // 2, 250), 'help is shown')
 
     def test_paint_bake_save_and_close(self):
         self.open()

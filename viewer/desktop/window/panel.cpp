@@ -21,7 +21,9 @@
 namespace vsplit::studio {
 namespace {
 
-constexpr int kMargin = 12, kGap = 5, kButton = 24, kLabel = 20, kTitle = 30, kSlider = 22;
+constexpr int kMargin = 12, kGap = 5, kButton = 24, kLabel = 20, kTitle = 30, kSlider = 22, kEdge = 8,
+              kFont = 13;
+constexpr double kLeastScale = 0.65;
 
 int height_of(const Line& line) {
     int height = 0;
@@ -89,6 +91,7 @@ struct Panel::Parts {
     std::vector<vtkSmartPointer<vtkTextActor>> texts;
     std::vector<Place> places, drawn;  // as they are to be, and as the picture has them
     int height = 0, drawn_height = 0;
+    int font = kFont;  ///< Of texts, but for titles, in pixels.
 };
 
 Panel::Panel(vtkRenderer* renderer) : parts_(new Parts) {
@@ -105,14 +108,20 @@ Panel::~Panel() {
 void Panel::set(const std::vector<Line>& lines, int height) {
     Parts& p = *parts_;
     p.places.clear();
-    int y = 8;
+    // In a low window all lines are lower, down to where a text is still read.
+    int wanted = 2 * kEdge;
+    for (const Line& line : lines) wanted += height_of(line) + kGap;
+    const double scale = std::clamp(double(height) / wanted, kLeastScale, 1.0);
+    const auto scaled = [&](int length) { return int(length * scale); };
+    p.font = std::max(9, scaled(kFont));
+    int y = scaled(kEdge);
     for (const Line& line : lines) {
-        const int h = height_of(line);
+        const int h = scaled(height_of(line));
         const int cells = std::max<int>(int(line.size()), 1);
         const int w = (kWidth - 2 * kMargin - (cells - 1) * kGap) / cells;
         for (int i = 0; i < int(line.size()); ++i)
             p.places.push_back({line[std::size_t(i)], kMargin + i * (w + kGap), y, w, h});
-        y += h + kGap;
+        y += h + scaled(kGap);
     }
     p.boxes.clear();
     p.height = height;
@@ -148,7 +157,7 @@ void Panel::set(const std::vector<Line>& lines, int height) {
         text->SetVisibility(true);
         const bool centred = cell.kind == Cell::Kind::kButton && !cell.swatch;
         text->SetInput(cell.text.c_str());
-        look->SetFontSize(cell.kind == Cell::Kind::kTitle ? 16 : 13);
+        look->SetFontSize(cell.kind == Cell::Kind::kTitle ? p.font + 3 : p.font);
         look->SetBold(cell.kind == Cell::Kind::kTitle);
         if (centred)
             look->SetJustificationToCentered();

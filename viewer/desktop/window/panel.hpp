@@ -39,8 +39,8 @@ class Panel {
     explicit Panel(vtkRenderer* renderer);
     ~Panel();
 
-    /// Lays the lines out from the top of `height` pixels. What the next picture draws is only what differs
-    /// from what was drawn: a text costs as much as a thousand triangles.
+    /// Lays the lines out from the top of `height` pixels, closer if they would not fit. What the next
+    /// picture draws is only what differs from what was drawn: a text costs as much as a thousand triangles.
     void set(const std::vector<Line>& lines, int height);
 
     /// The picture has been made.
