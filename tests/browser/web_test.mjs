@@ -47,7 +47,7 @@ async function view(t, source, { query = '', size = [480, 320], scheme = 'light'
 }
 const until = (page, condition, argument) => page.waitForFunction(condition, argument, { timeout: 40_000, polling: 50 });
 const level = (page) => page.evaluate(() => window.vsplit.state.level);
-const whole = (page, triangles = 0) => until(page, (n) => window.vsplit.model?.info && window.vsplit.state.level?.triangles === (n || window.vsplit.model.info.triangles), triangles);
+const whole = (page, triangles = 0) => until(page, (n) => window.vsplit?.model?.info && window.vsplit.state.level?.triangles === (n || window.vsplit.model.info.triangles), triangles);
 const failure = async (page) => {
     await until(page, () => window.vsplit.state.error);
     return page.evaluate(() => ({ code: window.vsplit.state.error.code, message: window.vsplit.state.error.message, shown: document.getElementById('notice').checkVisibility() && document.getElementById('notice-text').textContent }));
