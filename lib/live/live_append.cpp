@@ -37,14 +37,14 @@ void LiveBuffers::begin(const ProgressiveMesh& mesh, std::uint32_t vertices, std
     corner_bytes_ = std::uint64_t{3} * triangles <= 0x1000000 ? 3 : 4;
     reserve_large(positions_, vertices);
     reserve_large(triangles_, triangles);
-    if (!mesh.weights.empty()) weights_.reserve(vertices), moved_weights_.reserve(moves);
+    if (!mesh.weights.empty()) reserve_large(weights_, vertices), reserve_large(moved_weights_, moves);
     for (const Attribute& attribute : mesh.attributes) {
         Values& values = attributes_.emplace_back();
         values.components = attribute.components;
-        values.alive.reserve(std::size_t{attribute.components} * vertices);
-        values.moved.reserve(std::size_t{attribute.components} * moves);
+        reserve_large(values.alive, std::size_t{attribute.components} * vertices);
+        reserve_large(values.moved, std::size_t{attribute.components} * moves);
     }
-    if (!mesh.groups.empty()) groups_.reserve(triangles);
+    if (!mesh.groups.empty()) reserve_large(groups_, triangles);
     reserve_large(parents_, vertices);
     reserve_large(codes_, splits);
     reserve_large(corners_, std::size_t{corner_bytes_} * corner_changes + 1);
@@ -132,7 +132,7 @@ class OnGrid {
 
 /// What is exchanged by the moves that are new: kept as differences, which go both ways and in any order.
 void LiveBuffers::append_moves(const ProgressiveMesh& mesh) {
-    last_moves_.reserve(totals_.vertices);
+    if (last_moves_.empty()) reserve_large(last_moves_, totals_.vertices);
     last_moves_.resize(known_.vertices, kNever);
     const std::size_t begin = moves_stored_, end = known_.moves;
     moves_stored_ = end;
