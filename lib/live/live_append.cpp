@@ -19,6 +19,7 @@ namespace {
 
 constexpr std::int32_t kMostShort = 32767;
 constexpr std::size_t kMovesAhead = 16;
+constexpr std::uint32_t kMostListed = 16384;  // moves, before each of their arrays is gone through
 
 }  // namespace
 
@@ -50,6 +51,7 @@ void LiveBuffers::begin(const ProgressiveMesh& mesh, std::uint32_t vertices, std
     reserve_large(corners_, std::size_t{corner_bytes_} * corner_changes + 1);
     corners_.push_back(0);
     packed_ ? reserve_large(steps_, moves) : reserve_large(moved_positions_, moves);
+    moving_.resize(std::min(moves, kMostListed));
     checkpoints_.reserve(splits / kInterval + 1);
 
     known_.vertices = mesh.base_vertices;
