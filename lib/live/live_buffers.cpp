@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <limits>
 #include <utility>
 
@@ -15,9 +16,17 @@
 namespace vsplit {
 namespace {
 
-constexpr std::size_t kAhead = 32;   // corners between the one fetched and the one written
+constexpr std::size_t kAhead = 96;   // corners between the one fetched and the one written
 constexpr std::size_t kFetched = 3;  // corners fetched a split: about as many as change
 constexpr std::size_t kAlways = 4;   // corners written without looking at how many there are
+
+/// Eight splits that each move their parent and nothing else.
+bool all_move(const std::uint8_t* codes) {
+    constexpr std::uint64_t kEach = 0x0101010101010101;
+    std::uint64_t eight = 0;
+    std::memcpy(&eight, codes, sizeof eight);
+    return (eight & kEach * (kSpecialBit | kMoveBit)) == kEach * kMoveBit;
+}
 
 }  // namespace
 
@@ -237,6 +246,11 @@ void LiveBuffers::move(std::size_t from_level, const Ends& from, std::size_t to_
     const std::uint32_t* special_move = special_moves_.data() + from.special_moves;
     const std::uint32_t* parent = parents_.data() + from.vertices;
     for (std::size_t i = from_level; i < to_level; ++i) {
+        if (i + 8 <= to_level && listed + 8 < most && all_move(&codes_[i])) {
+            std::memcpy(list + listed, parent, 8 * sizeof(std::uint32_t));
+            listed += 8, parent += 8, i += 7;
+            continue;
+        }
         const unsigned code = codes_[i];
         if ((code & kSpecialBit) != 0) {
             for (std::uint32_t k = 0; k < special->moves; ++k) add(*special_move++);

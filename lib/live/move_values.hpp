@@ -19,7 +19,7 @@
 
 namespace vsplit {
 
-inline constexpr std::size_t kVerticesAhead = 32;
+inline constexpr std::size_t kVerticesAhead = 64;
 
 /// Flips the bits in which `kComponents` (or, if that is 0, `components`) floats of each vertex differ before
 /// and after its move.
