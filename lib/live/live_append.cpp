@@ -94,8 +94,10 @@ std::vector<std::uint32_t> moves_before(const ProgressiveMesh& mesh, std::size_t
                                         std::vector<std::uint32_t>& last) {
     std::vector<std::uint32_t> before;
     before.reserve(end - begin);
-    for (std::size_t i = begin; i < end; ++i)
+    for (std::size_t i = begin; i < end; ++i) {
+        prefetch(&last[mesh.moves[std::min(i + kMovesAhead, end - 1)].vertex]);
         before.push_back(std::exchange(last[mesh.moves[i].vertex], std::uint32_t(i)));
+    }
     return before;
 }
 
@@ -162,9 +164,13 @@ void LiveBuffers::append_moves(const ProgressiveMesh& mesh) {
         const std::vector<float>&born = mesh.attributes[a].values, &moved = mesh.moved_values[a];
         attributes_[a].moved.resize(n * end);
         std::uint32_t* const out = attributes_[a].moved.data();
+        const auto replaced = [&](std::size_t i, std::uint32_t was) {
+            return was == kNever ? &born[n * mesh.moves[i].vertex] : &moved[n * std::size_t{was}];
+        };
         each(begin, [&](std::size_t i, std::uint32_t was) {
-            const float* const old =
-                was == kNever ? &born[n * mesh.moves[i].vertex] : &moved[n * std::size_t{was}];
+            const std::size_t later = std::min(i + kMovesAhead, end - 1);
+            prefetch(replaced(later, before[later - begin]), n);
+            const float* const old = replaced(i, was);
             for (std::size_t k = 0; k < n; ++k) out[n * i + k] = flip(old[k], moved[n * i + k]);
         });
     }
@@ -205,9 +211,9 @@ void LiveBuffers::append_moves(const ProgressiveMesh& mesh) {
 }
 
 void LiveBuffers::store_corner(std::uint32_t corner) {
-    corners_.pop_back();
-    for (unsigned i = 0; i < corner_bytes_; ++i) corners_.push_back(std::uint8_t(corner >> 8 * i));
-    corners_.push_back(0);
+    const std::size_t at = corners_.size() - 1;
+    corners_.resize(at + corner_bytes_ + 1);
+    for (unsigned i = 0; i < corner_bytes_; ++i) corners_[at + i] = std::uint8_t(corner >> 8 * i);
     Checkpoint& checkpoint = checkpoints_.back();
     checkpoint.first_corner = std::min(checkpoint.first_corner, corner);
     checkpoint.last_corner = std::max(checkpoint.last_corner, corner);

@@ -108,9 +108,10 @@ std::size_t LiveBuffers::memory() const {
     std::size_t sum = sizeof(*this) + bytes_of(positions_) + bytes_of(triangles_) + bytes_of(weights_) +
                       bytes_of(attributes_) + bytes_of(groups_) + bytes_of(parents_) + bytes_of(codes_) +
                       bytes_of(corners_) + bytes_of(steps_) + bytes_of(moved_positions_) +
-                      bytes_of(last_moves_) + bytes_of(moving_) + bytes_of(moved_weights_) + bytes_of(specials_) +
-                      bytes_of(special_corners_) + bytes_of(special_moves_) + bytes_of(checkpoints_) +
-                      bytes_of(errors_) + vertex_runs_.memory() + triangle_runs_.memory();
+                      bytes_of(last_moves_) + bytes_of(moving_) + bytes_of(moved_weights_) +
+                      bytes_of(specials_) + bytes_of(special_corners_) + bytes_of(special_moves_) +
+                      bytes_of(checkpoints_) + bytes_of(errors_) + vertex_runs_.memory() +
+                      triangle_runs_.memory();
     for (const Values& values : attributes_) sum += bytes_of(values.alive) + bytes_of(values.moved);
     return sum;
 }
@@ -192,6 +193,7 @@ void LiveBuffers::patch(std::size_t level, const Ends& to) {
         }
         const std::uint32_t value = kForward ? vertex++ : parents_[--vertex];
         const std::size_t count = code & kCornerBits;
+        prefetch_once(change, kForward ? kBytesAhead : -kBytesAhead);
         if (left >= kAhead + kFetched)
             for (std::size_t k = kAhead; k < kAhead + kFetched; ++k) prefetch(out + corner(k));
         if (left >= kAlways) {
@@ -220,7 +222,8 @@ void LiveBuffers::exchange(std::span<const std::uint32_t> vertices, std::size_t 
         flip_any(vertices, values.alive.data(), values.moved.data() + values.components * first_move,
                  values.components);
     std::uint32_t least = vertices[0], most = vertices[0];
-    for (const std::uint32_t vertex : vertices) least = std::min(least, vertex), most = std::max(most, vertex);
+    for (const std::uint32_t vertex : vertices)
+        least = std::min(least, vertex), most = std::max(most, vertex);
     dirty_.vertices_begin = std::min(dirty_.vertices_begin, least);
     dirty_.vertices_end = std::max(dirty_.vertices_end, most + 1);
     if (tracking_)

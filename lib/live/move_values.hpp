@@ -20,6 +20,7 @@
 namespace vsplit {
 
 inline constexpr std::size_t kVerticesAhead = 64;
+inline constexpr std::ptrdiff_t kBytesAhead = 1024;  // of what is read in order
 
 /// Flips the bits in which `kComponents` (or, if that is 0, `components`) floats of each vertex differ before
 /// and after its move.
@@ -29,6 +30,7 @@ void flip_values(std::span<const std::uint32_t> vertices, float* alive, const st
     const std::size_t n = kComponents != 0 ? kComponents : components;
     for (std::size_t i = 0; i < vertices.size(); ++i, moved += n) {
         if (i + kVerticesAhead < vertices.size()) prefetch(alive + n * vertices[i + kVerticesAhead], n);
+        prefetch_once(moved, kBytesAhead);
         float* const a = alive + n * vertices[i];
         for (std::size_t k = 0; k < n; ++k)
             a[k] = std::bit_cast<float>(std::bit_cast<std::uint32_t>(a[k]) ^ moved[k]);
@@ -71,8 +73,7 @@ void step_place(Float3& place, const std::array<std::int16_t, 3>& step, const Pl
 template <bool kForward>
 __m128d step_pair(__m128d place, __m128d by, __m128d origin, __m128d step, __m128d inverse) {
     const __m128d rounds = _mm_set1_pd(kRounds);
-    const __m128d at =
-        _mm_sub_pd(_mm_add_pd(_mm_mul_pd(_mm_sub_pd(place, origin), inverse), rounds), rounds);
+    const __m128d at = _mm_sub_pd(_mm_add_pd(_mm_mul_pd(_mm_sub_pd(place, origin), inverse), rounds), rounds);
     return _mm_add_pd(origin, _mm_mul_pd(step, kForward ? _mm_add_pd(at, by) : _mm_sub_pd(at, by)));
 }
 #endif
@@ -103,6 +104,7 @@ void step_places(std::span<const std::uint32_t> vertices, Float3* alive,
             prefetch(&alive[vertices[i + kVerticesAhead]].x, 3);
             prefetch(&alive[vertices[i + 1 + kVerticesAhead]].x, 3);
         }
+        prefetch_once(&steps[i], kBytesAhead);
         Float3 &a = alive[vertices[i]], &b = alive[vertices[i + 1]];
         if (&a == &b) {
             step_place<kForward>(a, steps[i], grid, inverse);
