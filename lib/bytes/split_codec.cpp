@@ -111,12 +111,14 @@ const char* SplitCodec::code_mark(Coder& coder, std::uint32_t& primary) {
         return nullptr;
     }
     if (is_batch()) {
+        constexpr std::array<std::uint32_t, 3> kAhead = {96, 64, 32};
         for (; cursor_ < older_; ++cursor_) {
             const std::uint32_t v = asked_[cursor_];
-            if (cursor_ + 16 < older_) live.fetch(asked_[cursor_ + 16]);
+            // What comes is read from memory meanwhile: the vertex, its list, then its ring.
+            if (cursor_ + kAhead[0] < older_) live.fetch(asked_[cursor_ + kAhead[0]]);
+            if (cursor_ + kAhead[1] < older_) live.fetch(asked_[cursor_ + kAhead[1]], 0);
+            if (cursor_ + kAhead[2] < older_) live.fetch(asked_[cursor_ + kAhead[2]], 1);
             if (kind_ == SweepKind::kBatch && unlocked(live.vertices[v]) == 0) continue;
-            if (cursor_ + 8 < older_) live.fetch(asked_[cursor_ + 8], 0);
-            if (cursor_ + 4 < older_) live.fetch(asked_[cursor_ + 4], 1);
             if (!ask_batch(coder, v, v == primary)) continue;
             primary = v;
             return nullptr;

@@ -178,8 +178,7 @@ class SplitCodec {
     /// A vertex whose star changes: it is to be asked again, or has no triangle locked yet.
     LiveVertex& touch(std::uint32_t v) {
         LiveVertex& vertex = live.vertices[v];
-        if (vertex.touched != sweep_) vertex.locked = 0;
-        vertex.touched = sweep_;
+        vertex.touch(sweep_);
         if (!is_batch()) asks_.add(v);
         return vertex;
     }
