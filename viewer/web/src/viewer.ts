@@ -188,7 +188,7 @@ function showProgress(progress: Progress) {
     const whole = progress.fileBytes ?? Math.max(progress.needed, 1);
     element('arrived').style.width = `${(100 * progress.fed) / whole}%`;
     element('wanted').style.width = `${(100 * progress.needed) / whole}%`;
-    if (progress.retry) notice(`The connection broke (${progress.retry.reason}). Trying again, for the ${['first', 'second', 'third', 'fourth', 'fifth'][progress.retry.attempt - 1] ?? 'last'} time …`, false, true);
+    if (progress.retry) notice(`The connection broke (${progress.retry.reason}). Trying again${progress.retry.attempt > 1 ? `, attempt ${progress.retry.attempt}` : ''} …`, false, true);
     else if (element('notice').classList.contains('soft')) element('notice').hidden = true;
 }
 
