@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <memory>
 #include <thread>
 
@@ -184,7 +185,7 @@ void FileServer::stop_hard() {
 
 bool FileServer::process_and_close_socket(socket_t socket) {
     ++busy_;
-    Connection connection(socket, options_.limits, stopping_);
+    Connection connection(socket, options_.limits, stopping_, busy_);
     current_connection = &connection;
     bool closed = false;
     for (std::size_t left = options_.limits.requests; left > 0 && !closed; --left) {
@@ -246,7 +247,10 @@ void FileServer::answer(const httplib::Request& request, httplib::Response& resp
     const std::string path = request.path.substr(1);
     const std::string viewer = std::string(kViewerPath).substr(1);
     if (path.starts_with(viewer)) return answer_viewer(request, response, path.substr(viewer.size()));
+    errno = 0;
     auto file = folder_.find(path);
+    if (!file && (errno == EMFILE || errno == ENFILE))
+        return say_plainly(response, 503, "Too many files are open. Try again.");
     if (!file) return say_plainly(response, 404, "There is no such file here.");
     if (!file->folder) return answer_file(request, response, std::move(*file), path);
     if (!path.empty() && path.back() != '/')

@@ -13,7 +13,7 @@ namespace vsplit::app {
 
 struct ServerOptions {
     std::string allowed_origin = "*";  ///< Pages of which other origin may read; empty for none.
-    std::size_t connections = 64;      ///< Served at once; others wait.
+    std::size_t connections = 256;     ///< Served at once; others wait.
     ConnectionLimits limits;
 };
 
