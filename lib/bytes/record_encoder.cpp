@@ -274,7 +274,7 @@ void RecordEncoder::fetch(const Sweep& sweep, std::size_t step) const {
 
 template <class Coder>
 void RecordEncoder::code_splits(Coder& coder,
-                                const std::function<bool(const SplitPlan&, float, bool)>& done) {
+                                const std::function<bool(const SplitPlan&, float, const Sweep*)>& done) {
     bool block_ends = true;
     for (const Sweep& sweep : sweeps_) {
         const auto marked = std::count_if(sweep.steps.begin(), sweep.steps.end(),
@@ -293,7 +293,8 @@ void RecordEncoder::code_splits(Coder& coder,
             if (!fault) fault = codec_.code_split(coder, primary, wanted_, coded_);
             codec_.apply(coded_);
             learn_numbers(wanted_, coded_);
-            block_ends = done(coded_, std::bit_cast<float>(head.error_bits), &step == &sweep.steps.back());
+            block_ends = done(coded_, std::bit_cast<float>(head.error_bits),
+                              &step == &sweep.steps.back() ? &sweep : nullptr);
         }
         assert(!fault);
         static_cast<void>(fault);
@@ -303,7 +304,8 @@ void RecordEncoder::code_splits(Coder& coder,
 template void RecordEncoder::code_base(RangeEncoder&);
 template void RecordEncoder::code_base(NoCoder&);
 template void RecordEncoder::code_splits(RangeEncoder&,
-                                         const std::function<bool(const SplitPlan&, float, bool)>&);
-template void RecordEncoder::code_splits(NoCoder&, const std::function<bool(const SplitPlan&, float, bool)>&);
+                                         const std::function<bool(const SplitPlan&, float, const Sweep*)>&);
+template void RecordEncoder::code_splits(NoCoder&,
+                                         const std::function<bool(const SplitPlan&, float, const Sweep*)>&);
 
 }  // namespace vsplit

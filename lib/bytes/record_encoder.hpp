@@ -49,10 +49,10 @@ class RecordEncoder {
     /// Codes the base mesh's extras.
     template <class Coder>
     void code_base(Coder& coder);
-    /// Codes all splits; `done` is told of each after it was made, with its sweep's error and whether it was
-    /// the sweep's last, and says whether it was its block's last.
+    /// Codes all splits; `done` is told of each after it was made, with its sweep's error and, if it was the
+    /// sweep's last, the sweep; it says whether it was its block's last.
     template <class Coder>
-    void code_splits(Coder& coder, const std::function<bool(const SplitPlan&, float, bool)>& done);
+    void code_splits(Coder& coder, const std::function<bool(const SplitPlan&, float, const Sweep*)>& done);
 
   private:
     /// A vertex born in the split being planned.

@@ -180,7 +180,7 @@ class SplitCodec {
         LiveVertex& vertex = live.vertices[v];
         if (vertex.touched != sweep_) vertex.locked = 0;
         vertex.touched = sweep_;
-        if (!is_batch()) asks_.add(v);
+        if (!is_batch()) asks_.add(v < older_ ? vertex.row : v);
         return vertex;
     }
     /// The run that a set of corners is, if it is one that CutModel codes.
@@ -213,9 +213,9 @@ class SplitCodec {
     PlaceModel place_;
 
     // Sweeps.
-    AskList asks_;
-    SweepOrder order_;                  ///< Of all vertices,
-    std::vector<std::uint32_t> asked_;  ///< and of those that a batch asks.
+    AskList asks_;      ///< Of rounds: places in asked_, then what the sweep bears, by number.
+    SweepOrder order_;  ///< Of all vertices,
+    std::vector<std::uint32_t> asked_;  ///< as they were at the sweep's beginning.
     SweepKind kind_ = SweepKind::kRounds;
     SymbolModel<2> kinds_;
     std::uint32_t sweep_ = 0, cursor_ = 0;
