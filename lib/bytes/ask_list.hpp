@@ -58,13 +58,6 @@ class AskList {
         words_[place / 64] &= ~(std::uint64_t{1} << (place % 64));
         return cursor_ = place;
     }
-    /// Which of the 64 places after this one are to be asked.
-    std::uint64_t after(std::uint32_t place) const {
-        const std::size_t from = std::size_t{place} + 1, w = from / 64, shift = from % 64;
-        if (w >= words_.size()) return 0;
-        const std::uint64_t low = words_[w] >> shift;
-        return shift == 0 || w + 1 == words_.size() ? low : low | words_[w + 1] << (64 - shift);
-    }
     /// Has the sweep been at the piece at hand before?
     bool again() const { return again_; }
 

@@ -22,56 +22,41 @@ std::uint16_t product(std::uint32_t a, std::uint32_t b) {
 
 }  // namespace
 
-/// For rings of less than kWidth vertices: as loops of a known length, the compiler's vectors do it.
-template <std::size_t kWidth>
-VSPLIT_INLINE void CutModel::classify_ring(const LiveStars& mesh, const Star& star) {
-    const std::uint32_t count = star.ring_size();
-    const Lattice3 centre = mesh.vertices[star.centre].at;
-    // Offsets, the first from the one before the first on, and zeros behind the one after the last.
-    std::array<std::int32_t, kWidth + 2> dx{}, dy{}, dz{};
-    std::array<std::int32_t, kWidth> valence{}, edge, chord;
-    for (std::uint32_t i = 0; i < count; ++i) {
-        const LiveVertex& v = mesh.vertices[star.ring[i]];
-        dx[i + 1] = v.at[0] - centre[0];
-        dy[i + 1] = v.at[1] - centre[1];
-        dz[i + 1] = v.at[2] - centre[2];
-        valence[i] = static_cast<std::int32_t>(9 * (std::clamp<std::uint32_t>(v.star, 2, 9) - 2));
-    }
-    for (auto* axis : {&dx, &dy, &dz}) (*axis)[0] = (*axis)[count], (*axis)[count + 1] = (*axis)[1];
-    // Whole numbers below 2^53 in doubles: all of this is exact, and log2_linear() are their topmost bits.
-    std::array<double, kWidth + 2> x, y, z;
-    for (std::size_t i = 0; i < kWidth + 2; ++i) x[i] = dx[i], y[i] = dy[i], z[i] = dz[i];
-    std::array<double, kWidth> squared, across;
-    for (std::size_t i = 0; i < kWidth; ++i) {
-        squared[i] = 1 + x[i + 1] * x[i + 1] + y[i + 1] * y[i + 1] + z[i + 1] * z[i + 1];
-        const double ax = x[i + 2] - x[i], ay = y[i + 2] - y[i], az = z[i + 2] - z[i];
-        across[i] = 1 + ax * ax + ay * ay + az * az;
-    }
-    // Behind the ring are its first vertex once more, and ones.
-    double sum = 0;
-    for (std::size_t i = 0; i < kWidth; i += 2) sum += squared[i] + squared[i + 1];
-    sum -= squared[count] + static_cast<double>(kWidth - count - 1);
-    const std::int32_t mean = log2_linear(sum) - log2_linear(std::uint64_t{count});
-    for (std::size_t i = 0; i < kWidth; ++i) {
-        const std::int32_t length = log2_linear(squared[i]);
-        edge[i] = valence[i] + ratio_class(length - mean);
-        chord[i] = ratio_class(log2_linear(across[i]) - length - 256);
-    }
-    for (std::uint32_t i = 0; i < count; ++i) {
-        edge_kind_[i] = static_cast<std::uint8_t>(edge[i]);
-        chord_kind_[i] = static_cast<std::uint8_t>(chord[i]);
-    }
-    if (!star.closed) chord_kind_[0] = chord_kind_[count - 1] = 9;
-}
-
 void CutModel::classify(const LiveStars& mesh, const Star& star) {
     const std::uint32_t count = star.ring_size();
-    if (count < 8)
-        classify_ring<8>(mesh, star);
-    else if (count < 16)
-        classify_ring<16>(mesh, star);
-    else
-        classify_ring<Star::kLargestFan + 2>(mesh, star);
+    const Lattice3 centre = mesh.vertices[star.centre].at;
+    // Offsets of the ring's vertices, the last once more before them, the first once more behind.
+    std::array<Lattice3, Star::kLargestFan + 3> offset;
+    offset[0] = offset[1] = {};
+    std::array<std::uint64_t, Star::kLargestFan + 1> squared;
+    std::uint64_t sum = 0;
+    const auto square = [](std::int64_t x, std::int64_t y, std::int64_t z) {
+        return static_cast<std::uint64_t>(1 + x * x + y * y + z * z);
+    };
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const LiveVertex& v = mesh.vertices[star.ring[i]];
+        const std::int32_t x = v.at[0] - centre[0], y = v.at[1] - centre[1], z = v.at[2] - centre[2];
+        offset[i + 1] = {x, y, z};
+        sum += squared[i] = square(x, y, z);
+        edge_kind_[i] = static_cast<std::uint8_t>(9 * (std::clamp<std::uint32_t>(v.star, 2, 9) - 2));
+    }
+    offset[0] = offset[count];
+    offset[count + 1] = offset[1];
+    // Whole numbers below 2^53 as doubles are exact, and log2_linear() are their topmost bits.
+    const auto log2 = [](std::uint64_t x) {
+        return log2_linear(static_cast<double>(static_cast<std::int64_t>(x)));
+    };
+    const std::int32_t mean = log2(sum) - log2(count);
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const Lattice3 &before = offset[i], &after = offset[i + 2];
+        const std::int32_t length = log2(squared[i]),
+                           across = log2(square(std::int64_t{after[0]} - before[0],
+                                                std::int64_t{after[1]} - before[1],
+                                                std::int64_t{after[2]} - before[2]));
+        edge_kind_[i] = static_cast<std::uint8_t>(edge_kind_[i] + ratio_class(length - mean));
+        chord_kind_[i] = static_cast<std::uint8_t>(ratio_class(across - length - 256));
+    }
+    if (!star.closed) chord_kind_[0] = chord_kind_[count - 1] = 9;
 }
 
 template <std::uint32_t kBlocks>

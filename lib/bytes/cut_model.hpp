@@ -78,8 +78,6 @@ class CutModel {
     };
 
     void classify(const LiveStars& mesh, const Star& star);
-    template <std::size_t kWidth>
-    void classify_ring(const LiveStars& mesh, const Star& star);
     /// Fills weights_ and sums_ for all runs of this family (closed, both wings, one wing); their sum.
     std::uint32_t weigh(const Star& star, const Cut& wings, std::size_t family, std::uint32_t locked);
     template <std::uint32_t kBlocks>

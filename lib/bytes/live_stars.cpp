@@ -218,13 +218,24 @@ void LiveStars::shift(Slot* slot, const LiveVertex& v, std::uint32_t at) {
         std::copy_backward(slot + at, slot + v.slots(), slot + v.slots() + 1);
         return;
     }
-    std::array<Slot, kLine> old;
-    std::copy_n(slot, kLine, old.data());
-    for (std::uint32_t i = 1; i < kLine; ++i) {
-        const std::uint32_t later = 0u - std::uint32_t{i > at};
-        slot[i].vertex = (old[i - 1].vertex & later) | (old[i].vertex & ~later);
-        slot[i].corner = (old[i - 1].corner & later) | (old[i].corner & ~later);
+#if defined(__SSE2__)
+    // Two slots at a time: those from `at` on come from one place before.
+    static_assert(sizeof(Slot) == 8 && kLine == 8);
+    auto* const pair = reinterpret_cast<__m128i*>(slot);
+    const auto* const before = reinterpret_cast<const char*>(slot) - sizeof(Slot);
+    const __m128i place = _mm_set1_epi32(static_cast<int>(at));
+    __m128i stays[4], goes[4];
+    for (int i = 0; i < 4; ++i) stays[i] = _mm_load_si128(pair + i);
+    goes[0] = _mm_slli_si128(stays[0], 8);
+    for (int i = 1; i < 4; ++i) goes[i] = _mm_loadu_si128(reinterpret_cast<const __m128i*>(before + 16 * i));
+    for (int i = 0; i < 4; ++i) {
+        const __m128i later = _mm_cmpgt_epi32(_mm_set_epi32(2 * i + 1, 2 * i + 1, 2 * i, 2 * i), place);
+        _mm_store_si128(pair + i,
+                        _mm_or_si128(_mm_and_si128(later, goes[i]), _mm_andnot_si128(later, stays[i])));
     }
+#else
+    for (std::uint32_t i = kLine - 1; i > at; --i) slot[i] = slot[i - 1];
+#endif
 }
 
 void LiveStars::replace(std::uint32_t vertex, std::uint32_t parent, std::uint32_t child) {
@@ -251,7 +262,8 @@ void LiveStars::insert(std::uint32_t vertex, std::uint32_t parent, std::uint32_t
     if (++v.star > Star::kLargestFan) v.shape = LiveVertex::Shape::kOther;
 }
 
-void LiveStars::split(const Star& star, const Cut& cut, const Lattice3& parent_at, const Lattice3& child_at) {
+void LiveStars::split(const Star& star, const Cut& cut, const Lattice3& parent_at, const Lattice3& child_at,
+                      std::uint32_t sweep) {
     const std::uint32_t p = star.centre, child = vertex_count(), n = star.size, ring = star.ring_size(),
                         begin = cut.begin, length = cut.length, end = begin + length;
     const std::uint32_t first_at = star.ring[begin], last_at = star.ring[end];
@@ -305,6 +317,10 @@ void LiveStars::split(const Star& star, const Cut& cut, const Lattice3& parent_a
     }
     LiveVertex& parent = vertices[p];
     set_fan(parent, kept, star.closed);
+    parent.touch(sweep);
+    parent.locked += std::uint32_t{cut.first_wing} + std::uint32_t{cut.last_wing};
+    born.touched = sweep;
+    parent.acted = born.acted = sweep;
     for (std::size_t k = 0; k < 3; ++k) parent.ring[k] -= run[k];
     for (int i = 0; i < 2; ++i) {
         if (!(i == 0 ? cut.last_wing : cut.first_wing)) continue;
@@ -322,18 +338,21 @@ void LiveStars::split(const Star& star, const Cut& cut, const Lattice3& parent_a
         goes[k] = static_cast<std::uint32_t>(child_at[k] - parent_at[k]);
         both[k] = static_cast<std::uint32_t>(parent_at[k] + child_at[k]);
     }
-    if (parent_at[0] != was[0] || parent_at[1] != was[1] || parent_at[2] != was[2])
-        for (std::uint32_t i = 0; i < ring; ++i) {
-            LiveVertex& here = vertices[star.ring[i]];
-            const std::uint32_t sectors = !star.closed && (i == 0 || i == n) ? 1 : 2;
-            for (std::size_t k = 0; k < 3; ++k) here.ring[k] += sectors * stays[k];
-        }
+    const bool moves = (stays[0] | stays[1] | stays[2]) != 0;
+    for (std::uint32_t i = 0; i < ring; ++i) {
+        LiveVertex& here = vertices[star.ring[i]];
+        here.touch(sweep);
+        if (!moves) continue;
+        const std::uint32_t sectors = !star.closed && (i == 0 || i == n) ? 1 : 2;
+        for (std::size_t k = 0; k < 3; ++k) here.ring[k] += sectors * stays[k];
+    }
     for (std::uint32_t i = begin; i <= end; ++i) {
         const std::uint32_t w = star.ring[i];
         LiveVertex& here = vertices[w];
         const std::uint32_t sectors = std::uint32_t{i > begin} + std::uint32_t{i < end};
         for (std::size_t k = 0; k < 3; ++k) here.ring[k] += sectors * goes[k];
         const bool first = i == begin && cut.first_wing, last = i == end && cut.last_wing;
+        here.locked += sectors + std::uint32_t{first} + std::uint32_t{last};
         if (first || last) {
             insert(w, p, child, first ? first_corner + 2 : last_corner + 1, last);
             for (std::size_t k = 0; k < 3; ++k) here.ring[k] += both[k];

@@ -20,7 +20,8 @@ using Lattice3 = std::array<std::int32_t, 3>;
 /// Places lie within this distance of the lattice's origin, so that sums of them stay exact.
 inline constexpr std::int32_t kLatticeReach = 1 << 22;
 
-struct LiveVertex {
+/// A line of memory: vertices are met in no order of theirs.
+struct alignas(64) LiveVertex {
     /// What is known of the star: nothing, that it is no fan, that it is one.
     enum class Shape : std::uint8_t { kUnknown, kOther, kOpen, kClosed };
 
@@ -38,6 +39,11 @@ struct LiveVertex {
     Shape shape = Shape::kUnknown;
 
     bool is_fan() const { return shape >= Shape::kOpen; }
+    /// The star changes in this sweep.
+    void touch(std::uint32_t sweep) {
+        if (touched != sweep) locked = 0;
+        touched = sweep;
+    }
     std::uint32_t slots() const { return star + (shape == Shape::kOpen); }
 };
 
@@ -82,8 +88,10 @@ class LiveStars {
     /// Forgets the order of a star, one of whose triangles has got another corner.
     void forget(std::uint32_t vertex);
 
-    /// Splits a fan, as gathered: moves its centre, adds the child and the new triangles.
-    void split(const Star& star, const Cut& cut, const Lattice3& parent_at, const Lattice3& child_at);
+    /// Splits a fan, as gathered: moves its centre, adds the child and the new triangles. What changes is
+    /// touched in this sweep, parent and child act, and the triangles of the child are locked.
+    void split(const Star& star, const Cut& cut, const Lattice3& parent_at, const Lattice3& child_at,
+               std::uint32_t sweep);
 
     /// Adds (sign 1) or takes away (-1) a triangle's places from the ring sums of its corners.
     void weigh(std::uint32_t triangle, int sign);
@@ -107,7 +115,10 @@ class LiveStars {
             __builtin_prefetch(slot);
             if (v.power > 0) __builtin_prefetch(slot + kLine);
         } else if (stage == 1 && v.is_fan()) {
-            for (std::uint32_t i = 0; i < v.slots(); ++i) __builtin_prefetch(&vertices[slot[i].vertex], 1);
+            for (std::uint32_t i = 0; i < v.slots(); ++i) {
+                __builtin_prefetch(&vertices[slot[i].vertex], 1);
+                __builtin_prefetch(&lines_[slot[i].vertex], 1);
+            }
         }
     }
     /// And what the split itself changes.

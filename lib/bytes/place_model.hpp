@@ -144,7 +144,8 @@ Lattice3 PlaceModel::code(Coder& coder, PlaceGuides& g, const Lattice3& place, b
     const auto slide = [&](std::int64_t along_a, std::int64_t along_b) -> std::int64_t {
         if (g.normal[c] == 0) return 0;
         const std::int64_t side = along_a * g.normal[a] + along_b * g.normal[b];
-        return g.normal[c] > 0 ? rounded_quotient(side, g.normal[c]) : rounded_quotient(-side, -g.normal[c]);
+        const std::int64_t sign = g.normal[c] >> 63;  // either is as likely: no branch
+        return rounded_quotient((side ^ sign) - sign, (g.normal[c] ^ sign) - sign);
     };
     const std::int64_t slid = slide(16 * (std::int64_t{out[a]} - g.from[a]) - across[a],
                                     16 * (std::int64_t{out[b]} - g.from[b]) - across[b]);

@@ -161,24 +161,15 @@ void SplitCodec::apply_plain(const SplitPlan& plan) {
             std::copy_n(plan.move_values.begin(), stride,
                         values.begin() + static_cast<std::ptrdiff_t>(p * stride));
     }
-    live.split(star_, run_, parent_at, birth.at);
+    live.split(star_, run_, parent_at, birth.at, sweep_);
     order_.add(p);
     if (stride > 0) values.insert(values.end(), plan.birth_values.begin(), plan.birth_values.end());
     if (shape_.lossless) finer.push_back(birth.finer);
     if (shape_.group_bits > 0) groups.insert(groups.end(), plan.groups.begin(), plan.groups.end());
-    for (std::uint32_t i = 0; i < star_.ring_size(); ++i) touch(star_.ring[i]);
-    touch(p).acted = sweep_;
-    touch(child).acted = sweep_;
-    if (!is_batch()) return;
-    // What the batch has changed for good: the run, and the wings. Inside the run, two of them at each
-    // vertex.
-    const std::uint32_t end = run_.begin + run_.length;
-    for (std::uint32_t i = run_.begin; i <= end; ++i)
-        live.vertices[star_.ring[i]].locked +=
-            std::uint32_t{i > run_.begin} + std::uint32_t{i < end} +
-            (std::uint32_t{run_.first_wing} & std::uint32_t{i == run_.begin}) +
-            (std::uint32_t{run_.last_wing} & std::uint32_t{i == end});
-    live.vertices[p].locked += std::uint32_t{run_.first_wing} + std::uint32_t{run_.last_wing};
+    if (is_batch()) return;
+    for (std::uint32_t i = 0; i < star_.ring_size(); ++i) ask_again(star_.ring[i]);
+    ask_again(p);
+    ask_again(child);
 }
 
 template const char* SplitCodec::code_plain(RangeDecoder&, std::uint32_t, const Cut&, const SplitPlan&,

@@ -101,6 +101,14 @@ bool SplitCodec::ask_batch(Coder& coder, std::uint32_t v, bool splits) {
     return answer;
 }
 
+void SplitCodec::fetch_ahead(std::uint32_t place) const {
+    // The vertex, its list, then its ring.
+    constexpr std::array<std::uint32_t, 3> kAhead = {96, 64, 32};
+    if (place + kAhead[0] < older_) live.fetch(asked_[place + kAhead[0]]);
+    if (place + kAhead[1] < older_) live.fetch(asked_[place + kAhead[1]], 0);
+    if (place + kAhead[2] < older_) live.fetch(asked_[place + kAhead[2]], 1);
+}
+
 template <class Coder>
 const char* SplitCodec::code_mark(Coder& coder, std::uint32_t& primary) {
     if (!Coder::kWrites && !Coder::kDecodes) return nullptr;
@@ -116,10 +124,8 @@ const char* SplitCodec::code_mark(Coder& coder, std::uint32_t& primary) {
     if (is_batch()) {
         for (; cursor_ < older_; ++cursor_) {
             const std::uint32_t v = asked_[cursor_];
-            if (cursor_ + 16 < older_) live.fetch(asked_[cursor_ + 16]);
+            fetch_ahead(cursor_);
             if (kind_ == SweepKind::kBatch && unlocked(live.vertices[v]) == 0) continue;
-            if (cursor_ + 8 < older_) live.fetch(asked_[cursor_ + 8], 0);
-            if (cursor_ + 4 < older_) live.fetch(asked_[cursor_ + 4], 1);
             if (!ask_batch(coder, v, v == primary)) continue;
             primary = v;
             return nullptr;
@@ -128,13 +134,7 @@ const char* SplitCodec::code_mark(Coder& coder, std::uint32_t& primary) {
     }
     const auto at = [&](std::uint32_t place) { return place < older_ ? asked_[place] : place; };
     for (std::uint32_t place; (place = asks_.next()) != AskList::kNoPlace;) {
-        // What the next in line need comes from memory meanwhile: the list of the seventh, the ring of the
-        // fourth.
-        std::uint64_t line = asks_.after(place);
-        for (int i = 1; line != 0 && i <= 7; ++i, line &= line - 1)
-            if (i == 4 || i == 7)
-                live.fetch(at(place + 1 + static_cast<std::uint32_t>(std::countr_zero(line))),
-                           i == 4 ? 1 : 0);
+        if (!asks_.again()) fetch_ahead(place);
         const std::uint32_t v = at(place);
         if (ask(coder, v, v == primary)) {
             primary = v;

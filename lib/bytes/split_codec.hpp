@@ -175,12 +175,14 @@ class SplitCodec {
     }
     /// A triangle that the batch has changed has a corner that it bore.
     bool is_locked(const Triangle& t) const { return t[0] >= older_ || t[1] >= older_ || t[2] >= older_; }
+    void ask_again(std::uint32_t v) { asks_.add(v < older_ ? live.vertices[v].row : v); }
+    /// Has the memory read ahead that asking, and then splitting, needs: at this place of asked_ soon.
+    void fetch_ahead(std::uint32_t place) const;
     /// A vertex whose star changes: it is to be asked again, or has no triangle locked yet.
     LiveVertex& touch(std::uint32_t v) {
         LiveVertex& vertex = live.vertices[v];
-        if (vertex.touched != sweep_) vertex.locked = 0;
-        vertex.touched = sweep_;
-        if (!is_batch()) asks_.add(v < older_ ? vertex.row : v);
+        vertex.touch(sweep_);
+        if (!is_batch()) ask_again(v);
         return vertex;
     }
     /// The run that a set of corners is, if it is one that CutModel codes.
