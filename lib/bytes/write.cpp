@@ -25,8 +25,10 @@ constexpr std::size_t kUsualEntryBytes = 17;
 
 /// Where a sweep ends the error falls: a block of this share of what it may hold ends there too.
 constexpr double kEnoughBlock = 0.7;
-/// Where it reaches a level that somebody may ask for, a block that is smaller still.
+/// Where it reaches a level that somebody may ask for, a block that is smaller still; so many bytes it must
+/// have.
 constexpr double kEnoughForLevel = 0.02;
+constexpr std::size_t kLeastLevelBlock = 128;
 
 Error cannot(std::string message) {
     return {ErrorCode::kArgument, std::move(message), Error::kNowhere, 0};
@@ -148,7 +150,8 @@ Result<Encoded> encode(const ProgressiveMesh& mesh, const WriteOptions& options)
     encoder.code_splits(coder, [&](const SplitPlan& plan, float error, const Sweep* ended_sweep) {
         output.add(plan, error);
         ++made;
-        const double enough = !ended_sweep ? 1 : ended_sweep->reaches_level ? kEnoughForLevel : kEnoughBlock;
+        const bool level = ended_sweep && ended_sweep->reaches_level && coder.size() >= kLeastLevelBlock;
+        const double enough = level ? kEnoughForLevel : ended_sweep ? kEnoughBlock : 1;
         if (double(coder.size()) >= enough * double(target)) end_block();
         return made == ended;
     });
