@@ -10,11 +10,12 @@ namespace vsplit {
 
 namespace {
 
-void find_trades(const ProgressiveMesh& mesh, WholeNumbers& numbers) {
+void find_trades_and_idle(const ProgressiveMesh& mesh, WholeNumbers& numbers) {
     // Where each vertex is as the record goes: its birth, or its last move.
     std::vector<std::uint32_t> move_of(mesh.positions.size(), kNoVertex);
     const auto stride = static_cast<std::ptrdiff_t>(numbers.stride);
     numbers.traded.assign(mesh.positions.size(), false);
+    numbers.idle.assign(mesh.moves.size(), false);
     std::uint32_t begin = mesh.base_vertices, move = 0;
     for (const Split& split : mesh.splits) {
         for (std::uint32_t v = begin; v < split.vertices_end; ++v) {
@@ -35,6 +36,21 @@ void find_trades(const ProgressiveMesh& mesh, WholeNumbers& numbers) {
                 (!numbers.lossless ||
                  numbers.birth_finer[v] == (moved ? numbers.move_finer : numbers.birth_finer)[row]) &&
                 std::equal(values, values + stride, parent_values);
+        }
+        for (std::uint32_t m = move; m < split.moves_end; ++m) {
+            const std::uint32_t v = mesh.moves[m].vertex, now = move_of[v];
+            const bool moved = now != kNoVertex;
+            const std::uint32_t row = moved ? now : v;
+            const auto values = numbers.move_values.begin() + m * stride,
+                       values_now =
+                           (moved ? numbers.move_values : numbers.birth_values).begin() + row * stride;
+            numbers.idle[m] =
+                numbers.move_at[m] == (moved ? numbers.move_at : numbers.birth_at)[row] &&
+                (!numbers.lossless ||
+                 numbers.move_finer[m] == (moved ? numbers.move_finer : numbers.birth_finer)[row]) &&
+                std::equal(values, values + stride, values_now);
+            for (std::uint32_t later = m + 1; later < split.moves_end; ++later)
+                if (mesh.moves[later].vertex == v) numbers.idle[m] = true;
         }
         for (; move < split.moves_end; ++move) move_of[mesh.moves[move].vertex] = move;
         begin = split.vertices_end;
@@ -113,7 +129,7 @@ WholeNumbers whole_numbers(const ProgressiveMesh& mesh, const Lattice& lattice, 
         for (std::size_t m = 0; m < moves; ++m)
             out.move_values[m * out.stride + column] = ordered_number(mesh.moves[m].weight);
     }
-    find_trades(mesh, out);
+    find_trades_and_idle(mesh, out);
     find_rough(mesh, out);
     return out;
 }
@@ -273,8 +289,8 @@ void RecordEncoder::fetch(const Sweep& sweep, std::size_t step) const {
 }
 
 template <class Coder>
-void RecordEncoder::code_splits(Coder& coder,
-                                const std::function<bool(const SplitPlan&, float, const Sweep*)>& done) {
+const char* RecordEncoder::code_splits(
+    Coder& coder, const std::function<bool(const SplitPlan&, float, const Sweep*)>& done) {
     bool block_ends = true;
     for (const Sweep& sweep : sweeps_) {
         const auto marked = std::count_if(sweep.steps.begin(), sweep.steps.end(),
@@ -288,24 +304,26 @@ void RecordEncoder::code_splits(Coder& coder,
             fetch(sweep, i);
             std::uint32_t primary = step.primary;
             if (!fault && primary != kNoVertex) fault = codec_.code_mark(coder, primary);
+            if (fault) return fault;
             plan(step.split, wanted_);
             assert(primary == kNoVertex || wanted_.births[0].parent == primary);
-            if (!fault) fault = codec_.code_split(coder, primary, wanted_, coded_);
+            fault = codec_.code_split(coder, primary, wanted_, coded_);
+            if (fault) return fault;
             codec_.apply(coded_);
             learn_numbers(wanted_, coded_);
             block_ends = done(coded_, std::bit_cast<float>(head.error_bits),
                               &step == &sweep.steps.back() ? &sweep : nullptr);
         }
-        assert(!fault);
-        static_cast<void>(fault);
+        if (fault) return fault;
     }
+    return nullptr;
 }
 
 template void RecordEncoder::code_base(RangeEncoder&);
 template void RecordEncoder::code_base(NoCoder&);
-template void RecordEncoder::code_splits(RangeEncoder&,
-                                         const std::function<bool(const SplitPlan&, float, const Sweep*)>&);
-template void RecordEncoder::code_splits(NoCoder&,
-                                         const std::function<bool(const SplitPlan&, float, const Sweep*)>&);
+template const char* RecordEncoder::code_splits(
+    RangeEncoder&, const std::function<bool(const SplitPlan&, float, const Sweep*)>&);
+template const char* RecordEncoder::code_splits(
+    NoCoder&, const std::function<bool(const SplitPlan&, float, const Sweep*)>&);
 
 }  // namespace vsplit

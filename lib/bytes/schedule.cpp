@@ -21,7 +21,7 @@ constexpr std::size_t kBatchesADoubling = 8;
 /// Which splits of a record must come before which.
 class Dependencies {
   public:
-    explicit Dependencies(const ProgressiveMesh& mesh);
+    Dependencies(const ProgressiveMesh& mesh, const std::vector<bool>& idle);
 
     std::vector<std::uint32_t> waits_for;  ///< Per split, how many others are still to come before it.
     /// The vertices whose stars a split changes, but for those that it bears.
@@ -45,7 +45,8 @@ class Dependencies {
     std::vector<std::size_t> around_begin_{0};
 };
 
-Dependencies::Dependencies(const ProgressiveMesh& mesh) : mesh_(mesh), corners_(mesh.triangles) {
+Dependencies::Dependencies(const ProgressiveMesh& mesh, const std::vector<bool>& idle)
+    : mesh_(mesh), corners_(mesh.triangles) {
     const auto count = static_cast<std::uint32_t>(mesh.splits.size());
     first_.assign(mesh.positions.size(), kNoVertex);
     next_.assign(3 * mesh.triangles.size(), kNoVertex);
@@ -73,7 +74,8 @@ Dependencies::Dependencies(const ProgressiveMesh& mesh) : mesh_(mesh), corners_(
         around.clear();
         for (std::uint32_t v = from.vertices_end; v < to.vertices_end; ++v)
             if (mesh.parents[v] != kNoVertex) acts.push_back(mesh.parents[v]);
-        for (std::uint32_t i = from.moves_end; i < to.moves_end; ++i) acts.push_back(mesh.moves[i].vertex);
+        for (std::uint32_t i = from.moves_end; i < to.moves_end; ++i)
+            if (!idle[i]) acts.push_back(mesh.moves[i].vertex);
         std::sort(acts.begin(), acts.end());
         acts.erase(std::unique(acts.begin(), acts.end()), acts.end());
         for (std::uint32_t t = from.triangles_end; t < to.triangles_end; ++t)
@@ -299,11 +301,12 @@ std::vector<std::uint32_t> halvings(const ProgressiveMesh& mesh, double excess) 
 
 }  // namespace
 
-std::vector<Sweep> schedule(const ProgressiveMesh& mesh, const std::vector<bool>& traded, double excess) {
+std::vector<Sweep> schedule(const ProgressiveMesh& mesh, const std::vector<bool>& traded,
+                            const std::vector<bool>& idle, double excess) {
     const std::vector<std::uint32_t> levels = halvings(mesh, excess);
     if (auto batches = Batches(mesh, traded).sweeps(levels); !batches.empty()) return batches;
     const auto count = static_cast<std::uint32_t>(mesh.splits.size());
-    Dependencies depends(mesh);
+    Dependencies depends(mesh, idle);
     std::vector<std::uint32_t> number(mesh.positions.size(), kNoVertex);  // as written
     for (std::uint32_t v = 0; v < mesh.base_vertices; ++v) number[v] = v;
     std::uint32_t alive = mesh.base_vertices;

@@ -44,7 +44,10 @@ struct Sweep {
 /// leaves the mesh around each as it was. A record in which long rows of splits change different triangles is
 /// written in batches, else in rounds, in sweeps that each reach such a level. `traded` tells of each vertex
 /// of the record whether it keeps its parent's number when it is born, and the parent gets the new one.
-/// `mesh` must be sound. `excess` is what the file's errors will be over the record's, as a factor.
-std::vector<Sweep> schedule(const ProgressiveMesh& mesh, const std::vector<bool>& traded, double excess);
+/// `mesh` must be sound. `idle` tells of each
+/// move that the file does not have it. `excess` is what the file's errors will be over the record's, as a
+/// factor.
+std::vector<Sweep> schedule(const ProgressiveMesh& mesh, const std::vector<bool>& traded,
+                            const std::vector<bool>& idle, double excess);
 
 }  // namespace vsplit

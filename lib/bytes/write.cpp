@@ -85,7 +85,7 @@ Result<Encoded> encode(const ProgressiveMesh& mesh, const WriteOptions& options)
         std::any_of(numbers.birth_tolerance.begin(), numbers.birth_tolerance.end(), may_be_rough) ||
         std::any_of(numbers.move_tolerance.begin(), numbers.move_tolerance.end(), may_be_rough);
     const double excess = rough ? 1 + kRoughShare : 1;
-    std::vector<Sweep> sweeps = schedule(mesh, numbers.traded, excess);
+    std::vector<Sweep> sweeps = schedule(mesh, numbers.traded, numbers.idle, excess);
     for (Sweep& sweep : sweeps)
         sweep.error = std::min(sweep.error * float(excess), std::numeric_limits<float>::max());
 
@@ -98,7 +98,9 @@ Result<Encoded> encode(const ProgressiveMesh& mesh, const WriteOptions& options)
         first.codec().fit = &fit;
         first.codec().fit_every = static_cast<std::uint32_t>(mesh.splits.size() / kFitted + 1);
         first.code_base(look);
-        first.code_splits(look, [](const SplitPlan&, float, const Sweep*) { return false; });
+        const auto nothing = [](const SplitPlan&, float, const Sweep*) { return false; };
+        if (const char* fault = first.code_splits(look, nothing))
+            return cannot(std::string("the record cannot be put in order: ") + fault);
     }
     numbers.details.weights = fit.solve();
 
@@ -147,14 +149,16 @@ Result<Encoded> encode(const ProgressiveMesh& mesh, const WriteOptions& options)
         ended = made;
         next_target();
     };
-    encoder.code_splits(coder, [&](const SplitPlan& plan, float error, const Sweep* ended_sweep) {
+    const auto coded = [&](const SplitPlan& plan, float error, const Sweep* ended_sweep) {
         output.add(plan, error);
         ++made;
         const bool level = ended_sweep && ended_sweep->reaches_level && coder.size() >= kLeastLevelBlock;
         const double enough = level ? kEnoughForLevel : ended_sweep ? kEnoughBlock : 1;
         if (double(coder.size()) >= enough * double(target)) end_block();
         return made == ended;
-    });
+    };
+    if (const char* fault = encoder.code_splits(coder, coded))
+        return cannot(std::string("the record cannot be put in order: ") + fault);
     if (made > ended) end_block();
 
     const SplitCodec& codec = encoder.codec();
