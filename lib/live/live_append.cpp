@@ -19,6 +19,7 @@ namespace {
 
 constexpr std::int32_t kMostShort = 32767;
 constexpr std::size_t kMovesAhead = 16;
+constexpr std::uint32_t kMostListed = 16384;  // moves, before each of their arrays is gone through
 
 }  // namespace
 
@@ -37,19 +38,20 @@ void LiveBuffers::begin(const ProgressiveMesh& mesh, std::uint32_t vertices, std
     corner_bytes_ = std::uint64_t{3} * triangles <= 0x1000000 ? 3 : 4;
     reserve_large(positions_, vertices);
     reserve_large(triangles_, triangles);
-    if (!mesh.weights.empty()) weights_.reserve(vertices), moved_weights_.reserve(moves);
+    if (!mesh.weights.empty()) reserve_large(weights_, vertices), reserve_large(moved_weights_, moves);
     for (const Attribute& attribute : mesh.attributes) {
         Values& values = attributes_.emplace_back();
         values.components = attribute.components;
-        values.alive.reserve(std::size_t{attribute.components} * vertices);
-        values.moved.reserve(std::size_t{attribute.components} * moves);
+        reserve_large(values.alive, std::size_t{attribute.components} * vertices);
+        reserve_large(values.moved, std::size_t{attribute.components} * moves);
     }
-    if (!mesh.groups.empty()) groups_.reserve(triangles);
+    if (!mesh.groups.empty()) reserve_large(groups_, triangles);
     reserve_large(parents_, vertices);
     reserve_large(codes_, splits);
     reserve_large(corners_, std::size_t{corner_bytes_} * corner_changes + 1);
     corners_.push_back(0);
     packed_ ? reserve_large(steps_, moves) : reserve_large(moved_positions_, moves);
+    moving_.resize(std::min(moves, kMostListed));
     checkpoints_.reserve(splits / kInterval + 1);
 
     known_.vertices = mesh.base_vertices;
@@ -92,8 +94,10 @@ std::vector<std::uint32_t> moves_before(const ProgressiveMesh& mesh, std::size_t
                                         std::vector<std::uint32_t>& last) {
     std::vector<std::uint32_t> before;
     before.reserve(end - begin);
-    for (std::size_t i = begin; i < end; ++i)
+    for (std::size_t i = begin; i < end; ++i) {
+        prefetch(&last[mesh.moves[std::min(i + kMovesAhead, end - 1)].vertex]);
         before.push_back(std::exchange(last[mesh.moves[i].vertex], std::uint32_t(i)));
+    }
     return before;
 }
 
@@ -132,7 +136,7 @@ class OnGrid {
 
 /// What is exchanged by the moves that are new: kept as differences, which go both ways and in any order.
 void LiveBuffers::append_moves(const ProgressiveMesh& mesh) {
-    last_moves_.reserve(totals_.vertices);
+    if (last_moves_.empty()) reserve_large(last_moves_, totals_.vertices);
     last_moves_.resize(known_.vertices, kNever);
     const std::size_t begin = moves_stored_, end = known_.moves;
     moves_stored_ = end;
@@ -160,9 +164,13 @@ void LiveBuffers::append_moves(const ProgressiveMesh& mesh) {
         const std::vector<float>&born = mesh.attributes[a].values, &moved = mesh.moved_values[a];
         attributes_[a].moved.resize(n * end);
         std::uint32_t* const out = attributes_[a].moved.data();
+        const auto replaced = [&](std::size_t i, std::uint32_t was) {
+            return was == kNever ? &born[n * mesh.moves[i].vertex] : &moved[n * std::size_t{was}];
+        };
         each(begin, [&](std::size_t i, std::uint32_t was) {
-            const float* const old =
-                was == kNever ? &born[n * mesh.moves[i].vertex] : &moved[n * std::size_t{was}];
+            const std::size_t later = std::min(i + kMovesAhead, end - 1);
+            prefetch(replaced(later, before[later - begin]), n);
+            const float* const old = replaced(i, was);
             for (std::size_t k = 0; k < n; ++k) out[n * i + k] = flip(old[k], moved[n * i + k]);
         });
     }
@@ -203,9 +211,9 @@ void LiveBuffers::append_moves(const ProgressiveMesh& mesh) {
 }
 
 void LiveBuffers::store_corner(std::uint32_t corner) {
-    corners_.pop_back();
-    for (unsigned i = 0; i < corner_bytes_; ++i) corners_.push_back(std::uint8_t(corner >> 8 * i));
-    corners_.push_back(0);
+    const std::size_t at = corners_.size() - 1;
+    corners_.resize(at + corner_bytes_ + 1);
+    for (unsigned i = 0; i < corner_bytes_; ++i) corners_[at + i] = std::uint8_t(corner >> 8 * i);
     Checkpoint& checkpoint = checkpoints_.back();
     checkpoint.first_corner = std::min(checkpoint.first_corner, corner);
     checkpoint.last_corner = std::max(checkpoint.last_corner, corner);

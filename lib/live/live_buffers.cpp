@@ -4,70 +4,28 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
+#include <cstring>
 #include <limits>
 #include <utility>
 
 #include "extend.hpp"
 #include "live_codes.hpp"
+#include "move_values.hpp"
 #include "prefetch.hpp"
 
 namespace vsplit {
 namespace {
 
-constexpr std::size_t kAhead = 32;   // corners between the one fetched and the one written
+constexpr std::size_t kAhead = 96;   // corners between the one fetched and the one written
 constexpr std::size_t kFetched = 3;  // corners fetched a split: about as many as change
 constexpr std::size_t kAlways = 4;   // corners written without looking at how many there are
-constexpr std::size_t kChunk = 256;  // moves listed at a time
 
-constexpr std::size_t kVerticesAhead = 12;
-constexpr double kRounds = 6755399441055744;  // 1.5 * 2^52: a double next to it is a whole number
-
-/// Flips the bits in which `kComponents` (or, if that is 0, `components`) floats of each vertex differ before
-/// and after its move.
-template <std::size_t kComponents>
-void flip_values(std::span<const std::uint32_t> vertices, float* alive, const std::uint32_t* moved,
-                 std::size_t components) {
-    const std::size_t n = kComponents != 0 ? kComponents : components;
-    for (std::size_t i = 0; i < vertices.size(); ++i, moved += n) {
-        if (i + kVerticesAhead < vertices.size()) prefetch(alive + n * vertices[i + kVerticesAhead], n);
-        float* const a = alive + n * vertices[i];
-        for (std::size_t k = 0; k < n; ++k)
-            a[k] = std::bit_cast<float>(std::bit_cast<std::uint32_t>(a[k]) ^ moved[k]);
-    }
-}
-
-void flip_any(std::span<const std::uint32_t> vertices, float* alive, const std::uint32_t* moved,
-              std::size_t components) {
-    switch (components) {
-        case 1:
-            return flip_values<1>(vertices, alive, moved, 1);
-        case 2:
-            return flip_values<2>(vertices, alive, moved, 2);
-        case 3:
-            return flip_values<3>(vertices, alive, moved, 3);
-        case 4:
-            return flip_values<4>(vertices, alive, moved, 4);
-        default:
-            return flip_values<0>(vertices, alive, moved, components);
-    }
-}
-
-/// Moves places by steps of the grid.
-template <bool kForward>
-void step_places(std::span<const std::uint32_t> vertices, Float3* alive,
-                 const std::array<std::int16_t, 3>* steps, const PlaceGrid& grid) {
-    const double inverse = 1 / grid.step;
-    for (std::size_t i = 0; i < vertices.size(); ++i) {
-        if (i + kVerticesAhead < vertices.size()) prefetch(&alive[vertices[i + kVerticesAhead]].x, 3);
-        float* const a = &alive[vertices[i]].x;
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            // Rounded by what a double cannot hold: whole numbers, without a way through integers.
-            const double at = ((double(a[axis]) - grid.origin[axis]) * inverse + kRounds) - kRounds;
-            const double by = steps[i][axis];
-            a[axis] = float(grid.origin[axis] + grid.step * (kForward ? at + by : at - by));
-        }
-    }
+/// Eight splits that each move their parent and nothing else.
+bool all_move(const std::uint8_t* codes) {
+    constexpr std::uint64_t kEach = 0x0101010101010101;
+    std::uint64_t eight = 0;
+    std::memcpy(&eight, codes, sizeof eight);
+    return (eight & kEach * (kSpecialBit | kMoveBit)) == kEach * kMoveBit;
 }
 
 }  // namespace
@@ -150,9 +108,10 @@ std::size_t LiveBuffers::memory() const {
     std::size_t sum = sizeof(*this) + bytes_of(positions_) + bytes_of(triangles_) + bytes_of(weights_) +
                       bytes_of(attributes_) + bytes_of(groups_) + bytes_of(parents_) + bytes_of(codes_) +
                       bytes_of(corners_) + bytes_of(steps_) + bytes_of(moved_positions_) +
-                      bytes_of(last_moves_) + bytes_of(moved_weights_) + bytes_of(specials_) +
-                      bytes_of(special_corners_) + bytes_of(special_moves_) + bytes_of(checkpoints_) +
-                      bytes_of(errors_) + vertex_runs_.memory() + triangle_runs_.memory();
+                      bytes_of(last_moves_) + bytes_of(moving_) + bytes_of(moved_weights_) +
+                      bytes_of(specials_) + bytes_of(special_corners_) + bytes_of(special_moves_) +
+                      bytes_of(checkpoints_) + bytes_of(errors_) + vertex_runs_.memory() +
+                      triangle_runs_.memory();
     for (const Values& values : attributes_) sum += bytes_of(values.alive) + bytes_of(values.moved);
     return sum;
 }
@@ -234,6 +193,7 @@ void LiveBuffers::patch(std::size_t level, const Ends& to) {
         }
         const std::uint32_t value = kForward ? vertex++ : parents_[--vertex];
         const std::size_t count = code & kCornerBits;
+        prefetch_once(change, kForward ? kBytesAhead : -kBytesAhead);
         if (left >= kAhead + kFetched)
             for (std::size_t k = kAhead; k < kAhead + kFetched; ++k) prefetch(out + corner(k));
         if (left >= kAlways) {
@@ -261,10 +221,11 @@ void LiveBuffers::exchange(std::span<const std::uint32_t> vertices, std::size_t 
     for (Values& values : attributes_)
         flip_any(vertices, values.alive.data(), values.moved.data() + values.components * first_move,
                  values.components);
-    for (const std::uint32_t vertex : vertices) {
-        dirty_.vertices_begin = std::min(dirty_.vertices_begin, vertex);
-        dirty_.vertices_end = std::max(dirty_.vertices_end, vertex + 1);
-    }
+    std::uint32_t least = vertices[0], most = vertices[0];
+    for (const std::uint32_t vertex : vertices)
+        least = std::min(least, vertex), most = std::max(most, vertex);
+    dirty_.vertices_begin = std::min(dirty_.vertices_begin, least);
+    dirty_.vertices_end = std::max(dirty_.vertices_end, most + 1);
     if (tracking_)
         for (const std::uint32_t vertex : vertices) vertex_runs_.mark(vertex);
 }
@@ -274,12 +235,13 @@ void LiveBuffers::exchange(std::span<const std::uint32_t> vertices, std::size_t 
 template <bool kForward>
 void LiveBuffers::move(std::size_t from_level, const Ends& from, std::size_t to_level, const Ends& to) {
     if (from.moves == to.moves) return;
-    std::array<std::uint32_t, kChunk> list;
+    std::uint32_t* const list = moving_.data();
+    const std::size_t most = moving_.size();
     std::size_t listed = 0, first = from.moves;
     const auto add = [&](std::uint32_t vertex) {
         list[listed++] = vertex;
-        if (listed < kChunk) return;
-        exchange<kForward>(list, first);
+        if (listed < most) return;
+        exchange<kForward>(moving_, first);
         first += listed;
         listed = 0;
     };
@@ -287,6 +249,11 @@ void LiveBuffers::move(std::size_t from_level, const Ends& from, std::size_t to_
     const std::uint32_t* special_move = special_moves_.data() + from.special_moves;
     const std::uint32_t* parent = parents_.data() + from.vertices;
     for (std::size_t i = from_level; i < to_level; ++i) {
+        if (i + 8 <= to_level && listed + 8 < most && all_move(&codes_[i])) {
+            std::memcpy(list + listed, parent, 8 * sizeof(std::uint32_t));
+            listed += 8, parent += 8, i += 7;
+            continue;
+        }
         const unsigned code = codes_[i];
         if ((code & kSpecialBit) != 0) {
             for (std::uint32_t k = 0; k < special->moves; ++k) add(*special_move++);
@@ -296,7 +263,7 @@ void LiveBuffers::move(std::size_t from_level, const Ends& from, std::size_t to_
         if ((code & kMoveBit) != 0) add(*parent);
         ++parent;
     }
-    exchange<kForward>(std::span(list).first(listed), first);
+    exchange<kForward>(std::span(moving_).first(listed), first);
 }
 
 void LiveBuffers::refine(std::size_t splits) {

@@ -7,8 +7,10 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 
 #include "vsplit/live_buffers.hpp"
 
@@ -35,11 +37,13 @@ inline Float3 grid_place(const PlaceGrid& grid, const std::array<std::int32_t, 3
             float(grid.origin[2] + grid.step * at[2])};
 }
 
-/// Reads a byte beyond a corner of three. Compilers make one load of it.
+/// Reads a byte beyond a corner of three.
 template <unsigned kBytes>
-inline std::uint32_t load(const std::uint8_t* p) {
-    const std::uint32_t four = std::uint32_t{p[0]} | std::uint32_t{p[1]} << 8 | std::uint32_t{p[2]} << 16 |
-                               std::uint32_t{p[3]} << 24;
+std::uint32_t load(const std::uint8_t* p) {
+    std::uint32_t four = 0;
+    std::memcpy(&four, p, sizeof four);
+    if constexpr (std::endian::native == std::endian::big)
+        four = four << 24 | (four & 0xff00) << 8 | (four >> 8 & 0xff00) | four >> 24;
     return kBytes == 3 ? four & 0xffffff : four;
 }
 

@@ -177,6 +177,7 @@ class LiveBuffers {
     std::vector<std::uint32_t> moved_weights_;                   ///< Likewise.
     std::size_t moves_stored_ = 0;
     std::vector<std::uint32_t> last_moves_;  ///< Of each vertex, while there are splits to come.
+    std::vector<std::uint32_t> moving_;      ///< Room to list vertices that move.
     std::vector<Special> specials_;
     std::vector<std::uint32_t> special_corners_;  ///< The vertex of each of their corner changes.
     std::vector<std::uint32_t> special_moves_;    ///< The vertex of each of their moves.
