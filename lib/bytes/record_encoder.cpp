@@ -225,9 +225,8 @@ void RecordEncoder::plan(std::uint32_t number, SplitPlan& out) {
         out.triangles.push_back({vertex_[c[0]], vertex_[c[1]], vertex_[c[2]]});
         if (numbers_.largest_group > 0) out.groups.push_back(mesh_.groups[t]);
     }
-    // The last move of a vertex is the one that counts; one that changes no number is none.
     for (std::uint32_t m = from.moves_end; m < to.moves_end; ++m) {
-        if (last_move(mesh_.moves[m].vertex, from, to) != m) continue;
+        if (numbers_.idle[m]) continue;
         const bool traded =
             std::any_of(births_.begin(), births_.end(), [&](const Born& b) { return b.traded_move == m; });
         if (traded) continue;
@@ -237,6 +236,7 @@ void RecordEncoder::plan(std::uint32_t number, SplitPlan& out) {
         move.tolerance = numbers_.move_tolerance[m];
         if (numbers_.lossless) move.finer = numbers_.move_finer[m];
         const auto values = numbers_.move_values.begin() + static_cast<std::ptrdiff_t>(m) * stride;
+        // A rough place may be where the exact one comes to lie.
         if (move.at == codec_.live.vertices[move.vertex].at &&
             (!numbers_.lossless || move.finer == codec_.finer[move.vertex]) &&
             std::equal(values, values + stride,
@@ -257,8 +257,10 @@ void RecordEncoder::learn_numbers(const SplitPlan& wanted, const SplitPlan& code
 }
 
 template <class Coder>
-void RecordEncoder::code_base(Coder& coder) {
-    codec_.code_base(coder);
+void RecordEncoder::code_base(Coder& coder, bool whole) {
+    const char* fault = codec_.code_base(coder, whole, mesh_.base_triangles);
+    assert(!fault);
+    static_cast<void>(fault);
 }
 
 void RecordEncoder::fetch(const Sweep& sweep, std::size_t step) const {
@@ -319,8 +321,8 @@ const char* RecordEncoder::code_splits(
     return nullptr;
 }
 
-template void RecordEncoder::code_base(RangeEncoder&);
-template void RecordEncoder::code_base(NoCoder&);
+template void RecordEncoder::code_base(RangeEncoder&, bool);
+template void RecordEncoder::code_base(NoCoder&, bool);
 template const char* RecordEncoder::code_splits(
     RangeEncoder&, const std::function<bool(const SplitPlan&, float, const Sweep*)>&);
 template const char* RecordEncoder::code_splits(

@@ -48,9 +48,9 @@ class RecordEncoder {
 
     SplitCodec& codec() { return codec_; }
     BaseMesh base() const;
-    /// Codes the base mesh's extras.
+    /// Codes the base mesh: whole, or what Draco leaves.
     template <class Coder>
-    void code_base(Coder& coder);
+    void code_base(Coder& coder, bool whole);
     /// Codes all splits; `done` is told of each after it was made, with its sweep's error and, if it was the
     /// sweep's last, the sweep; it says whether it was its block's last. Null, or how record and sweeps
     /// contradict each other.
