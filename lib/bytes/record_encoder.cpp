@@ -70,8 +70,9 @@ void find_rough(const ProgressiveMesh& mesh, WholeNumbers& numbers) {
         const bool is_plain = to.vertices_end == from.vertices_end + 1 &&
                               to.moves_end == from.moves_end + 1 &&
                               mesh.parents[from.vertices_end] == mesh.moves[from.moves_end].vertex;
-        const bool replaces = is_plain && !numbers.traded[from.vertices_end];
+        const bool replaces = is_plain && !numbers.traded[from.vertices_end] && !numbers.idle[from.moves_end];
         for (std::uint32_t m = from.moves_end; m < to.moves_end; ++m) {
+            if (numbers.idle[m]) continue;  // replaces nothing
             const std::uint32_t v = mesh.moves[m].vertex;
             if (replaces && plain[v]) {
                 const double tolerance = kRoughShare * double(to.error) / numbers.lattice.step;
