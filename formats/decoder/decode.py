@@ -5,8 +5,8 @@
 
     decode.py FILE        one line a prefix (base, then each block): counts, and checksums of all arrays
 
-Python's standard library; the base mesh's triangles and places are decoded by the command `draco_decoder` (Debian
-package draco). It believes the writer where the C++ reader distrusts it: an oracle for what the bytes mean, not for
+Python's standard library; a base mesh in Draco's bytes is decoded by the command `draco_decoder` (Debian package
+draco). It believes the writer where the C++ reader distrusts it: an oracle for what the bytes mean, not for
 what is wrong with them.
 """
 import math
@@ -361,36 +361,29 @@ class File:
     def read_table(self, table, at_end):
         """Blocks: offset, bytes, checksum, then splits, vertices, triangles, corner changes and moves up to their
         end, and the error."""
-        at = 0
-
-        def number():
-            nonlocal at
-            value = shift = 0
-            while True:
-                byte = table[at]
-                at += 1
-                value |= (byte & 127) << shift
-                shift += 7
-                if byte < 128:
-                    return value
-
-        def unzigzag(n):
-            return n >> 1 ^ -(n & 1)
-
+        at = count = shift = 0
+        while True:
+            byte = table[at]
+            at += 1
+            count |= (byte & 127) << shift
+            shift += 7
+            if byte < 128:
+                break
+        checksums = struct.unpack_from('<%dI' % count, table, at)
+        coder = Coder(table[at + 4 * count:])
+        models = [Number() for _ in range(7)]
         totals = [0, self.base_vertices, self.base_triangles, 0, 0]
         error = struct.unpack('<I', struct.pack('<f', self.base_error))[0]
         self.blocks, self.bytes = [], at_end
-        while at < len(table):
-            size, splits = number(), number()
-            vertices = unzigzag(number()) + splits
-            triangles = unzigzag(number()) + 2 * vertices
-            grown = [splits, vertices, triangles, number(), number()]
-            totals = [total + more for total, more in zip(totals, grown)]
-            error -= number()
-            wanted = struct.unpack_from('<I', table, at)[0]
-            at += 4
+        for wanted in checksums:
+            size, splits, vertices, triangles, corners, moves, fall = [model.decode(coder) for model in models]
+            vertices = (unzigzag(vertices) + splits) & M32
+            triangles = (unzigzag(triangles) + 2 * vertices) & M32
+            totals = [total + more for total, more in zip(totals, [splits, vertices, triangles, corners, moves])]
+            error -= fall
             self.blocks.append((self.bytes, size, wanted, *totals, struct.unpack('<f', struct.pack('<I', error))[0]))
             self.bytes += size
+        coder.end()
         self.splits, self.vertices, self.triangles, self.corners, self.moves = totals
 
 
@@ -836,7 +829,8 @@ class Decoder:
 
     def decode_base(self):
         places, triangles = [[0, 0, 0] for _ in range(self.file.base_vertices)], []
-        if self.file.base_triangles:
+        whole = not self.file.draco
+        if not whole:
             places, triangles = decode_draco(self.file.draco)
         for place in places:
             self.live.add_vertex(place)
@@ -844,12 +838,21 @@ class Decoder:
             self.live.add_triangle(triangle)
         coder = Coder(self.file.extras)
         for v in range(len(places)):
-            if not triangles:
+            if whole:
                 self.live.at[v] = self.places.decode_free(coder, self.live.at[v - 1] if v else [0, 0, 0])
             self.finer.append(self.decode_finer(coder))
             before = self.values[-1] if v else [0] * len(self.mixes)
             self.values.append(self.decode_values(coder, before, [1] * len(self.mixes)))
             self.add_vertex(self.live.at[v], self.finer[v], self.values[v], NONE)
+        if whole:
+            unnamed, models = 0, [Number() for _ in range(3)]
+            for _ in range(self.file.base_triangles):
+                triangle = []
+                for model in models:
+                    triangle.append((unnamed - unzigzag(model.decode(coder))) & M32)
+                    unnamed = max(unnamed, triangle[-1] + 1)
+                self.live.add_triangle(triangle)
+                triangles.append(triangle)
         for triangle in triangles:
             self.born_triangles.append(triangle)
             if self.group_bits:

@@ -241,8 +241,10 @@ void RecordEncoder::learn_numbers(const SplitPlan& wanted, const SplitPlan& code
 }
 
 template <class Coder>
-void RecordEncoder::code_base(Coder& coder) {
-    codec_.code_base(coder);
+void RecordEncoder::code_base(Coder& coder, bool whole) {
+    const char* fault = codec_.code_base(coder, whole, mesh_.base_triangles);
+    assert(!fault);
+    static_cast<void>(fault);
 }
 
 void RecordEncoder::fetch(const Sweep& sweep, std::size_t step) const {
@@ -300,8 +302,8 @@ void RecordEncoder::code_splits(Coder& coder,
     }
 }
 
-template void RecordEncoder::code_base(RangeEncoder&);
-template void RecordEncoder::code_base(NoCoder&);
+template void RecordEncoder::code_base(RangeEncoder&, bool);
+template void RecordEncoder::code_base(NoCoder&, bool);
 template void RecordEncoder::code_splits(RangeEncoder&,
                                          const std::function<bool(const SplitPlan&, float, bool)>&);
 template void RecordEncoder::code_splits(NoCoder&, const std::function<bool(const SplitPlan&, float, bool)>&);

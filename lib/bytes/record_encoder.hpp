@@ -46,9 +46,9 @@ class RecordEncoder {
 
     SplitCodec& codec() { return codec_; }
     BaseMesh base() const;
-    /// Codes the base mesh's extras.
+    /// Codes the base mesh: whole, or what Draco leaves.
     template <class Coder>
-    void code_base(Coder& coder);
+    void code_base(Coder& coder, bool whole);
     /// Codes all splits; `done` is told of each after it was made, with its sweep's error and whether it was
     /// the sweep's last, and says whether it was its block's last.
     template <class Coder>

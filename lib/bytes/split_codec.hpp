@@ -99,10 +99,11 @@ class SplitCodec {
     PlaceFit* fit = nullptr;                          ///< Encoder: told of places that were predicted, of
     std::uint32_t fit_every = 1;  ///< every so manieth split; a NoCoder leaves the others where they are.
 
-    /// What Draco's bytes do not hold of the base mesh. With triangles, `live` has its vertices and they;
-    /// without, its vertices with their places to come. `values`, `finer` and `groups` are filled in order.
+    /// What Draco's bytes do not hold of the base mesh. `live` has its vertices; and its triangles too,
+    /// unless places and triangles come here (`whole`) and this is a decoder: then so many are added.
+    /// `values`, `finer` and `groups` are filled in order. The reason if the stream contradicts itself.
     template <class Coder>
-    void code_base(Coder& coder);
+    const char* code_base(Coder& coder, bool whole, std::uint32_t triangles);
 
     template <class Coder>
     const char* code_head(Coder& coder, SweepHead& head);
@@ -234,6 +235,7 @@ class SplitCodec {
     BitModel in_mask_;
     NumberModel births_, twin_, far_, moves_, moved_far_, extra_, corner_birth_, corner_parent_, corner_ring_,
         corner_far_;
+    std::array<NumberModel, 3> base_corner_;
     SymbolModel<2> parent_kind_, corner_kind_;
     std::array<NumberModel, 3> finer_;
     std::vector<ValueModel> value_;

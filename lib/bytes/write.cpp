@@ -21,7 +21,7 @@ constexpr std::size_t kFitted = 1 << 16;
 
 /// Blocks of fewer bytes would pay more for their place in the table.
 constexpr std::size_t kLeastBlock = 512;
-constexpr std::size_t kUsualEntryBytes = 17;
+constexpr std::size_t kUsualEntryBytes = 11;
 
 /// Where a sweep ends the error falls: a block of this share of what it may hold ends there too.
 constexpr double kEnoughBlock = 0.7;
@@ -53,6 +53,31 @@ const char* options_fault(const WriteOptions& o) {
     if (o.texcoord_bits < 2 || o.texcoord_bits > 24) return "texcoord_bits must be 2 to 24";
     if (o.color_bits < 2 || o.color_bits > 16) return "color_bits must be 2 to 16";
     return nullptr;
+}
+/// The base mesh, whole in the file's stream or its places and triangles as Draco's bytes; the encoder's next
+/// are the splits.
+Status write_base(RecordEncoder& encoder, BaseCoding coding, Encoded& out) {
+    auto draco = encode_base(encoder.base());
+    if (!draco) return draco.error();
+    const auto stream = [](RecordEncoder to, bool whole) {
+        RangeEncoder coder;
+        to.code_base(coder, whole);
+        return coder.finish();
+    };
+    out.base = stream(encoder, true);
+    bool whole = true;
+    if (!draco->empty()) {
+        const std::vector<std::byte> rest = stream(encoder, false);
+        whole = coding == BaseCoding::kLeast && out.base.size() <= draco->size() + rest.size();
+        if (!whole) {
+            out.base = *std::move(draco);
+            out.draco_bytes = out.base.size();
+            out.base.insert(out.base.end(), rest.begin(), rest.end());
+        }
+    }
+    RangeEncoder written;
+    encoder.code_base(written, whole);
+    return Ok{};
 }
 
 Result<Encoded> encode(const ProgressiveMesh& mesh, const WriteOptions& options) {
@@ -92,7 +117,7 @@ Result<Encoded> encode(const ProgressiveMesh& mesh, const WriteOptions& options)
         RecordEncoder first(mesh, numbers, sweeps);
         first.codec().fit = &fit;
         first.codec().fit_every = static_cast<std::uint32_t>(mesh.splits.size() / kFitted + 1);
-        first.code_base(look);
+        first.code_base(look, true);
         first.code_splits(look, [](const SplitPlan&, float, bool) { return false; });
     }
     numbers.details.weights = fit.solve();
@@ -102,14 +127,8 @@ Result<Encoded> encode(const ProgressiveMesh& mesh, const WriteOptions& options)
                       numbers.largest_group > 0);
     output.reserve(mesh.positions.size(), mesh.triangles.size(), mesh.splits.size(),
                    mesh.corner_changes.size(), mesh.moves.size());
-    auto base = encode_base(encoder.base());
-    if (!base) return base.error();
-    out.base = *std::move(base);
-    out.draco_bytes = out.base.size();
+    if (const auto base = write_base(encoder, options.base_coding, out); !base) return base.error();
     RangeEncoder coder;
-    encoder.code_base(coder);
-    const std::vector<std::byte> extras = coder.finish();
-    out.base.insert(out.base.end(), extras.begin(), extras.end());
     const std::size_t base_parts = std::max(mesh.base_vertices, mesh.base_triangles);
     if (out.base.size() * kPartsPerByte < base_parts)
         out.base.resize((base_parts + kPartsPerByte - 1) / kPartsPerByte);

@@ -282,7 +282,12 @@ TEST_CASE("A job decodes elsewhere; meanwhile the stream goes on within what it 
 }
 
 TEST_CASE("A host may decode the base mesh; what it gives is checked") {
-    const Bytes bytes = file_of(test::naive_record(test::make_sphere(30, 20), 5, 300));
+    WriteOptions with_draco;
+    with_draco.base_coding = BaseCoding::kDraco;
+    const auto written =
+        write_progressive_mesh(test::naive_record(test::make_sphere(30, 20), 5, 300), with_draco);
+    REQUIRE(written.ok());
+    const Bytes& bytes = *written;
     const auto whole = read_progressive_mesh(bytes);
     int asked = 0;
     StreamOptions options;
