@@ -61,6 +61,7 @@ class Annotation {
         line(size, "text", value, meaning);
     }
     void part(std::uint64_t size, const std::string& meaning) { line(size, "bytes", "", meaning); }
+    std::uint64_t at() const { return at_; }
     std::uint32_t next_byte(std::size_t ahead) const { return std::uint32_t(bytes_[at_ + ahead]); }
     std::uint32_t next_u16() const { return next_byte(0) | next_byte(1) << 8; }
 
@@ -116,19 +117,15 @@ void annotate_file(std::span<const std::byte> bytes, const FileInfo& info) {
     }
     a.part(info.base_draco_bytes, "base mesh: Draco");
     a.part(info.base_bytes - info.base_draco_bytes, "base mesh: stream");
+    a.number("table: blocks");
+    for (std::size_t i = 0; i < info.blocks.size(); ++i) a.checksum(fmt::format("block {}", i));
+    a.part(info.data_offset - a.at(), "table: stream");
     for (std::size_t i = 0; i < info.blocks.size(); ++i) {
-        const std::string block = fmt::format("block {}: ", i);
-        a.number(block + "bytes");
-        a.number(block + "splits");
-        a.number(block + "vertices against splits, zigzag");
-        a.number(block + "triangles against twice the vertices, zigzag");
-        a.number(block + "corner changes");
-        a.number(block + "moves");
-        a.number(block + "fall of the geometric error's bits");
-        a.checksum(fmt::format("block {}", i));
+        const BlockInfo& block = info.blocks[i];
+        a.part(block.bytes,
+               fmt::format("block {}: after it {} splits, {} vertices, {} triangles, error {}", i,
+                           block.splits_end, block.vertices_end, block.triangles_end, block.error));
     }
-    for (std::size_t i = 0; i < info.blocks.size(); ++i)
-        a.part(info.blocks[i].bytes, fmt::format("block {}", i));
 }
 
 Json to_json(const FileInfo& info) {

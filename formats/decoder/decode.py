@@ -5,8 +5,8 @@
 
     decode.py FILE        one line a prefix (base, then each block): counts, and checksums of all arrays
 
-Python's standard library; the base mesh's triangles and places are decoded by the command `draco_decoder` (Debian
-package draco). It believes the writer where the C++ reader distrusts it: an oracle for what the bytes mean, not for
+Python's standard library; a base mesh in Draco's bytes is decoded by the command `draco_decoder` (Debian package
+draco). It believes the writer where the C++ reader distrusts it: an oracle for what the bytes mean, not for
 what is wrong with them.
 """
 import math
@@ -361,36 +361,29 @@ class File:
     def read_table(self, table, at_end):
         """Blocks: offset, bytes, checksum, then splits, vertices, triangles, corner changes and moves up to their
         end, and the error."""
-        at = 0
-
-        def number():
-            nonlocal at
-            value = shift = 0
-            while True:
-                byte = table[at]
-                at += 1
-                value |= (byte & 127) << shift
-                shift += 7
-                if byte < 128:
-                    return value
-
-        def unzigzag(n):
-            return n >> 1 ^ -(n & 1)
-
+        at = count = shift = 0
+        while True:
+            byte = table[at]
+            at += 1
+            count |= (byte & 127) << shift
+            shift += 7
+            if byte < 128:
+                break
+        checksums = struct.unpack_from('<%dI' % count, table, at)
+        coder = Coder(table[at + 4 * count:])
+        models = [Number() for _ in range(7)]
         totals = [0, self.base_vertices, self.base_triangles, 0, 0]
         error = struct.unpack('<I', struct.pack('<f', self.base_error))[0]
         self.blocks, self.bytes = [], at_end
-        while at < len(table):
-            size, splits = number(), number()
-            vertices = unzigzag(number()) + splits
-            triangles = unzigzag(number()) + 2 * vertices
-            grown = [splits, vertices, triangles, number(), number()]
-            totals = [total + more for total, more in zip(totals, grown)]
-            error -= number()
-            wanted = struct.unpack_from('<I', table, at)[0]
-            at += 4
+        for wanted in checksums:
+            size, splits, vertices, triangles, corners, moves, fall = [model.decode(coder) for model in models]
+            vertices = (unzigzag(vertices) + splits) & M32
+            triangles = (unzigzag(triangles) + 2 * vertices) & M32
+            totals = [total + more for total, more in zip(totals, [splits, vertices, triangles, corners, moves])]
+            error -= fall
             self.blocks.append((self.bytes, size, wanted, *totals, struct.unpack('<f', struct.pack('<I', error))[0]))
             self.bytes += size
+        coder.end()
         self.splits, self.vertices, self.triangles, self.corners, self.moves = totals
 
 
@@ -800,7 +793,7 @@ class Decoder:
         self.values, self.finer, self.groups = [], [], []
         self.cuts, self.places = Cuts(), Places(file.place_weights)
 
-        self.sweep, self.cursor, self.asked, self.round = 0, 0, set(), 0
+        self.sweep, self.cursor, self.asked, self.row = 0, 0, set(), {}
         self.marked_left = self.unmarked_left = 0
         self.error_bits, self.split_size = 0x7F7FFFFF, 0
         self.mark = [Bit() for _ in range(8 * 18 * 10)]
@@ -827,7 +820,7 @@ class Decoder:
         self.last_place, self.last_group = [0, 0, 0], 0
 
         # The progressive mesh.
-        self.behind, self.end = [], 0       # the order of vertices in batches
+        self.behind, self.end = [], 0       # the row of vertices that sweeps ask
         self.positions, self.weights, self.parents, self.born_triangles = [], [], [], []
         self.splits, self.corner_changes, self.moves = [], [], []
         self.attribute_values = [[] for _ in file.attributes]
@@ -836,7 +829,8 @@ class Decoder:
 
     def decode_base(self):
         places, triangles = [[0, 0, 0] for _ in range(self.file.base_vertices)], []
-        if self.file.base_triangles:
+        whole = not self.file.draco
+        if not whole:
             places, triangles = decode_draco(self.file.draco)
         for place in places:
             self.live.add_vertex(place)
@@ -844,12 +838,21 @@ class Decoder:
             self.live.add_triangle(triangle)
         coder = Coder(self.file.extras)
         for v in range(len(places)):
-            if not triangles:
+            if whole:
                 self.live.at[v] = self.places.decode_free(coder, self.live.at[v - 1] if v else [0, 0, 0])
             self.finer.append(self.decode_finer(coder))
             before = self.values[-1] if v else [0] * len(self.mixes)
             self.values.append(self.decode_values(coder, before, [1] * len(self.mixes)))
             self.add_vertex(self.live.at[v], self.finer[v], self.values[v], NONE)
+        if whole:
+            unnamed, models = 0, [Number() for _ in range(3)]
+            for _ in range(self.file.base_triangles):
+                triangle = []
+                for model in models:
+                    triangle.append((unnamed - unzigzag(model.decode(coder))) & M32)
+                    unnamed = max(unnamed, triangle[-1] + 1)
+                self.live.add_triangle(triangle)
+                triangles.append(triangle)
         for triangle in triangles:
             self.born_triangles.append(triangle)
             if self.group_bits:
@@ -873,11 +876,13 @@ class Decoder:
                 alive = len(self.live.at)
                 self.sweep += 1
                 self.older = alive
-                self.cursor, self.round, self.asked = 0, 0, set(range(alive))
+                self.cursor, self.asked = 0, set(range(alive))  # of rounds: places
+                self.lap, self.lap_end, self.piece, self.born, self.again = 0, alive, 0, alive, False
                 self.sparse = self.marked_left * 64 < alive
                 self.order = [0] if alive else []
                 while len(self.order) < alive:
                     self.order.append(self.behind[self.order[-1]])
+                self.row = {v: i for i, v in enumerate(self.order)}
             primary = NONE
             if self.marked_left:
                 self.marked_left -= 1
@@ -907,19 +912,35 @@ class Decoder:
                 self.cursor += 1
             raise Bad('a sweep marks fewer vertices than it announces')
         while True:
-            ahead = [v for v in self.asked if v >= self.cursor]
-            if not ahead:
-                self.round += 1
-                ahead = self.asked
-            v = self.cursor = min(ahead)
-            self.asked.remove(v)
+            self.next_place()
+            v = self.order[self.cursor] if self.cursor < self.older else self.cursor
             size, bumpy = self.bumpy(v)
             valence = min(max(len(self.live.star[v]), 3), 10) - 3
             touched, acted = min(self.sweep - self.live.touched[v], 2), min(self.sweep - self.live.acted[v], 2)
-            age = (touched * 3 + acted) * 2 + (self.round > 0)
+            age = (touched * 3 + acted) * 2 + self.again
             if coder.bit(self.mark[(valence * 18 + age) * 10 + bumpy]):
                 self.split_size += (size - self.split_size) >> 5
                 return v
+
+    def next_place(self):
+        """The next place to ask in rounds."""
+        while True:
+            end = min(self.piece + 1024, self.lap_end)
+            ahead = [p for p in self.asked if p >= self.cursor and (p < end or p >= self.born)]
+            if ahead:
+                self.cursor = min(ahead)
+                self.asked.remove(self.cursor)
+                return
+            if self.cursor > self.piece:
+                self.cursor, self.again = self.piece, True
+                continue
+            ahead = [p for p in self.asked if self.piece <= p < self.lap_end]
+            if not ahead:
+                if not self.asked:
+                    raise Bad('a sweep marks fewer vertices than it announces')
+                self.lap, self.lap_end, ahead = self.lap + 1, len(self.live.at), self.asked
+            self.piece = self.cursor = min(ahead) // 1024 * 1024
+            self.born, self.again = len(self.live.at), self.lap > 0
 
     def bumpy(self, v):
         size = log2(1 + sum(b * b for b in self.live.bump(v)))
@@ -1152,7 +1173,7 @@ class Decoder:
             live.touched[v] = self.sweep
         for v in range(first, len(live.at)):
             live.acted[v] = self.sweep
-        self.asked |= changed
+        self.asked |= {self.row.get(v, v) for v in changed}
         live.link_twins(first)
         error = struct.unpack('<f', struct.pack('<I', self.error_bits))[0]
         self.splits.append((len(self.positions), len(self.born_triangles), len(self.corner_changes), len(self.moves),

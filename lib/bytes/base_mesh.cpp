@@ -12,11 +12,11 @@ Result<BaseMesh> decode_base(std::span<const std::byte> bytes, std::uint32_t ver
         return Error{ErrorCode::kMalformed, std::move(message), Error::kNowhere, 0};
     };
     BaseMesh base;
-    if (triangles == 0) {
-        if (!bytes.empty()) return malformed("a base mesh without triangles has Draco bytes");
+    if (bytes.empty()) {
         base.places.resize(vertices);
         return base;
     }
+    if (triangles == 0) return malformed("a base mesh without triangles has Draco bytes");
     if (vertices == 0) return malformed("the base mesh has triangles but no vertices");
     base.places.resize(vertices);
     base.triangles.resize(triangles);

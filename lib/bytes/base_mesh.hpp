@@ -20,12 +20,13 @@ struct BaseMesh {
     std::vector<Triangle> triangles;
 };
 
-/// Draco's sequential coding of whole numbers: order and places come back exactly. A mesh without triangles
-/// has no bytes (Draco knows none); its places are coded elsewhere.
+/// Draco's sequential coding of whole numbers: order and places come back exactly. No bytes for what Draco
+/// does not read again: a mesh without triangles, or with many vertices for its few.
 Result<std::vector<std::byte>> encode_base(const BaseMesh& base);
 
-/// `vertices` and `triangles` are what the header announces; anything else is kMalformed. Without triangles
-/// the places are zeros. `decoder`, if it is not empty, takes Draco's place.
+/// `vertices` and `triangles` are what the header announces; anything else is kMalformed. Without bytes,
+/// places and triangles come elsewhere: the places are zeros, and there are no triangles. `decoder`, if it is
+/// not empty, takes Draco's place.
 Result<BaseMesh> decode_base(std::span<const std::byte> bytes, std::uint32_t vertices,
                              std::uint32_t triangles, const BaseMeshDecoder& decoder);
 

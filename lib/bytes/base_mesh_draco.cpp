@@ -35,7 +35,12 @@ Result<std::vector<std::byte>> encode_base(const BaseMesh& base) {
         return Error{ErrorCode::kMalformed, "Draco cannot encode the base mesh: " + status.error_msg_string(),
                      Error::kNowhere, 0};
     const auto* data = reinterpret_cast<const std::byte*>(buffer.data());
-    return std::vector<std::byte>(data, data + buffer.size());
+    std::vector<std::byte> bytes(data, data + buffer.size());
+    BaseMesh back{std::vector<Lattice3>(base.places.size()), std::vector<Triangle>(base.triangles.size())};
+    const Status read = decode_draco(bytes, std::span(back.places.data()->data(), 3 * back.places.size()),
+                                     std::span(back.triangles.data()->data(), 3 * back.triangles.size()));
+    if (!read || back.places != base.places || back.triangles != base.triangles) bytes.clear();
+    return bytes;
 }
 
 Status decode_draco(std::span<const std::byte> bytes, std::span<std::int32_t> places_out,

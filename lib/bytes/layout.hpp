@@ -71,4 +71,9 @@ T get(std::span<const std::byte> bytes, std::size_t offset) {
     return value;
 }
 
+/// Is there nothing but padding?
+inline bool only_zeros(std::span<const std::byte> bytes) {
+    return std::all_of(bytes.begin(), bytes.end(), [](std::byte b) { return b == std::byte{0}; });
+}
+
 }  // namespace vsplit

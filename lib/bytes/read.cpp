@@ -19,10 +19,6 @@ Error at(std::uint64_t offset, ErrorCode code, std::string message) {
 }
 
 /// Whatever follows the bytes that a stream took must be zeros, and few streams are padded.
-bool only_zeros(std::span<const std::byte> bytes) {
-    return std::all_of(bytes.begin(), bytes.end(), [](std::byte b) { return b == std::byte{0}; });
-}
-
 }  // namespace
 
 constexpr const char* kUnsoundValue = "a place or value is not finite, or a weight is negative";
@@ -66,7 +62,8 @@ const char* BlockDecoder::State::begin_base(BaseMesh base, std::span<const std::
     for (const Lattice3& place : base.places) codec.live.add_vertex(place);
     for (const Triangle& triangle : base.triangles) codec.live.add_triangle(triangle);
     RangeDecoder coder(extras);
-    codec.code_base(coder);
+    if (const char* fault = codec.code_base(coder, info.base_draco_bytes == 0, info.base_triangles))
+        return fault;
     if (coder.overrun()) return "the base mesh's stream ends too early";
     if (!only_zeros(extras.subspan(std::min(coder.taken(), extras.size()))))
         return "the base mesh's stream is longer than it needs";
@@ -205,7 +202,7 @@ const char* announcement_fault(const FileInfo& info, const ProgressiveMesh& mesh
     for (std::size_t i = 0; i < blocks; ++i) {
         if ((whole || i + 1 < blocks) &&
             double(info.blocks[i].error) != error_at(mesh, info.blocks[i].splits_end)) {
-            offset = table_entry_at(info, i);
+            offset = info.table_offset;
             return "a block ends at another error than the table announces";
         }
     }

@@ -367,12 +367,12 @@ void SplitCodec::code_values(Coder& coder, const std::int32_t* wanted, std::vect
 }
 
 template <class Coder>
-void SplitCodec::code_base(Coder& coder) {
+const char* SplitCodec::code_base(Coder& coder, bool whole, std::uint32_t triangles) {
     const std::size_t stride = shape_.stride();
     const std::uint32_t count = live.vertex_count();
     std::vector<std::int32_t> row;
     for (std::uint32_t v = 0; v < count && !coder.overrun(); ++v) {
-        if (live.triangles.empty())
+        if (whole)
             live.vertices[v].at =
                 place_.code_free(coder, v == 0 ? Lattice3{} : live.vertices[v - 1].at, live.vertices[v].at);
         if (shape_.lossless) code_finer(coder, std::array<std::uint32_t, 3>(finer[v]), finer[v]);
@@ -383,6 +383,20 @@ void SplitCodec::code_base(Coder& coder) {
         row.clear();
         code_values(coder, values.data() + v * stride, row);
         std::copy(row.begin(), row.end(), values.begin() + static_cast<std::ptrdiff_t>(v * stride));
+    }
+    // Corners count back from the vertex that none before has named.
+    std::uint32_t unnamed = 0;
+    for (std::uint32_t t = 0; whole && t < triangles && !coder.overrun(); ++t) {
+        Triangle triangle{};
+        if (!Coder::kDecodes) triangle = live.triangles[t];
+        for (std::size_t k = 0; k < 3; ++k) {
+            triangle[k] = unnamed - unzigzag(base_corner_[k].code(coder, zigzag(unnamed - triangle[k])));
+            if (triangle[k] >= count) return "a triangle of the base mesh names a vertex that does not exist";
+            unnamed = std::max(unnamed, triangle[k] + 1);
+        }
+        if (triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0])
+            return "a triangle of the base mesh names a vertex twice";
+        if (Coder::kDecodes) live.add_triangle(triangle);
     }
     for (std::uint32_t v = 0; v < count; ++v) order_.add(kNoVertex);
     if (shape_.group_bits > 0) {
@@ -395,6 +409,7 @@ void SplitCodec::code_base(Coder& coder) {
         }
     }
     live.link_twins(0);
+    return nullptr;
 }
 
 // ---- What a split does
@@ -484,7 +499,7 @@ void SplitCodec::apply(const SplitPlan& plan) {
 }
 
 #define VSPLIT_INSTANTIATE(Coder)                                                                        \
-    template void SplitCodec::code_base(Coder&);                                                         \
+    template const char* SplitCodec::code_base(Coder&, bool, std::uint32_t);                             \
     template void SplitCodec::code_birth_place(Coder&, const SplitPlan&, std::size_t, bool, SplitPlan&); \
     template void SplitCodec::code_move(Coder&, const SplitPlan&, std::size_t, std::uint32_t, bool,      \
                                         SplitPlan&);                                                     \

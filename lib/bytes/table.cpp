@@ -2,9 +2,12 @@
 // SPDX-License-Identifier: MIT
 #include "table.hpp"
 
+#include <algorithm>
+#include <array>
 #include <bit>
 
 #include "layout.hpp"
+#include "number_models.hpp"
 
 namespace vsplit {
 namespace {
@@ -18,30 +21,47 @@ BlockInfo base_as_block(const FileInfo& info) {
     return base;
 }
 
-// Modulo 2^64, so that any table can be written.
-std::uint64_t zigzag(std::uint64_t difference) {
-    return (difference << 1) ^ (0 - (difference >> 63));
+std::uint32_t zigzag(std::uint32_t difference) {
+    return (difference << 1) ^ (0u - (difference >> 31));
 }
-std::uint64_t unzigzag(std::uint64_t code) {
-    return (code >> 1) ^ (0 - (code & 1));
+std::uint32_t unzigzag(std::uint32_t code) {
+    return (code >> 1) ^ (0u - (code & 1));
+}
+
+/// What an entry says beside its checksum, modulo 2^32, so that any table can be written.
+struct Entry {
+    std::uint32_t bytes, splits, vertices, triangles, corners, moves, fall;
+};
+
+class EntryModel {
+  public:
+    template <class Coder>
+    void code(Coder& coder, Entry& entry) {
+        std::size_t i = 0;
+        for (std::uint32_t* value : {&entry.bytes, &entry.splits, &entry.vertices, &entry.triangles,
+                                     &entry.corners, &entry.moves, &entry.fall})
+            *value = models_[i++].code(coder, *value);
+    }
+
+  private:
+    std::array<NumberModel, 7> models_;
+};
+
+Entry entry_of(const BlockInfo& before, const BlockInfo& block) {
+    const std::uint32_t splits = block.splits_end - before.splits_end,
+                        vertices = block.vertices_end - before.vertices_end;
+    return {block.bytes,
+            splits,
+            zigzag(vertices - splits),
+            zigzag(block.triangles_end - before.triangles_end - 2 * vertices),
+            block.corners_end - before.corners_end,
+            block.moves_end - before.moves_end,
+            std::bit_cast<std::uint32_t>(before.error) - std::bit_cast<std::uint32_t>(block.error)};
 }
 
 void put_number(ByteWriter& out, std::uint64_t value) {
     for (; value >= 128; value >>= 7) out.put(static_cast<std::uint8_t>(value | 128));
     out.put(static_cast<std::uint8_t>(value));
-}
-
-void put_entry(ByteWriter& out, const BlockInfo& before, const BlockInfo& block) {
-    const std::uint64_t splits = std::uint64_t{block.splits_end} - before.splits_end,
-                        vertices = std::uint64_t{block.vertices_end} - before.vertices_end;
-    put_number(out, block.bytes);
-    put_number(out, splits);
-    put_number(out, zigzag(vertices - splits));
-    put_number(out, zigzag(block.triangles_end - std::uint64_t{before.triangles_end} - 2 * vertices));
-    put_number(out, std::uint64_t{block.corners_end} - before.corners_end);
-    put_number(out, std::uint64_t{block.moves_end} - before.moves_end);
-    put_number(out, std::bit_cast<std::uint32_t>(before.error) - std::bit_cast<std::uint32_t>(block.error));
-    out.put(block.checksum);
 }
 
 }  // namespace
@@ -62,46 +82,60 @@ bool take_number(std::span<const std::byte> bytes, std::size_t& at, std::uint64_
 
 std::vector<std::byte> encode_table(const FileInfo& front, std::span<const BlockInfo> blocks) {
     ByteWriter out;
+    put_number(out, blocks.size());
+    for (const BlockInfo& block : blocks) out.put(block.checksum);
+    RangeEncoder coder;
+    EntryModel model;
     BlockInfo before = base_as_block(front);
     for (const BlockInfo& block : blocks) {
-        put_entry(out, before, block);
+        Entry entry = entry_of(before, block);
+        model.code(coder, entry);
         before = block;
     }
+    const std::vector<std::byte> stream = coder.finish();
+    out.bytes().insert(out.bytes().end(), stream.begin(), stream.end());
     return std::move(out.bytes());
 }
 
-std::uint64_t table_entry_at(const FileInfo& info, std::size_t index) {
-    return info.table_offset + encode_table(info, std::span(info.blocks).first(index)).size();
+bool table_checksums(std::span<const std::byte> table, std::size_t& at, std::uint64_t& count) {
+    at = 0;
+    return take_number(table, at, count) && count <= (table.size() - at) / sizeof(std::uint32_t);
 }
 
 const char* decode_table(std::span<const std::byte> table, FileInfo& info, std::size_t& at) {
     BlockInfo before = base_as_block(info);
-    std::uint64_t end = info.data_offset;
+    std::uint64_t end = info.data_offset, count = 0;
+    std::size_t sums = 0;
     info.blocks.clear();
-    info.blocks.reserve(table.size() / kLeastEntryBytes);
-    std::size_t next = 0;
-    while (next < table.size()) {
-        at = next;
-        std::uint64_t bytes = 0, splits = 0, vertices = 0, triangles = 0, corners = 0, moves = 0, fall = 0;
-        for (std::uint64_t* value : {&bytes, &splits, &vertices, &triangles, &corners, &moves, &fall})
-            if (!take_number(table, next, *value)) return "a number of the table is not one";
-        if (table.size() - next < 4) return "the table ends within an entry";
+    at = 0;
+    if (!table_checksums(table, sums, count)) return "the table ends within its checksums";
+    info.blocks.reserve(count);
+    const auto stream = table.subspan(sums + count * sizeof(std::uint32_t));
+    at = table.size() - stream.size();
+    RangeDecoder coder(stream);
+    EntryModel model;
+    for (std::size_t i = 0; i < count; ++i) {
+        Entry entry{};
+        model.code(coder, entry);
+        if (coder.overrun()) return "the table ends within an entry";
+        const std::uint64_t bytes = entry.bytes, splits = entry.splits, corners = entry.corners,
+                            moves = entry.moves, fall = entry.fall;
         if (bytes == 0) return "a block is empty";
-        if (bytes > 0xFFFFFFFFu) return "a block is too long";
         if (splits == 0) return "a block has no splits";
-        vertices = unzigzag(vertices) + splits;
-        triangles = unzigzag(triangles) + 2 * vertices;
+        const auto births = static_cast<std::uint32_t>(unzigzag(entry.vertices) + entry.splits);
+        const std::uint64_t vertices = births,
+                            triangles = static_cast<std::uint32_t>(unzigzag(entry.triangles) + 2 * births);
         std::uint64_t parts = 0;
-        for (const std::uint64_t count : {splits, vertices, triangles, corners, moves}) {
+        for (const std::uint64_t part : {splits, vertices, triangles, corners, moves}) {
             // So that no count can exceed what the file's bytes can hold.
-            if (count > bytes * kPartsPerByte || (parts += count) > bytes * kPartsPerByte)
+            if (part > bytes * kPartsPerByte || (parts += part) > bytes * kPartsPerByte)
                 return "a block announces more parts than its bytes can hold";
         }
         if (fall > std::bit_cast<std::uint32_t>(before.error)) return "a block's error is negative";
         BlockInfo block;
-        const auto add = [](std::uint32_t total, std::uint64_t count, std::uint32_t& sum) {
-            sum = static_cast<std::uint32_t>(total + count);
-            return total + count < kNoVertex / 4 * std::uint64_t{3};
+        const auto add = [](std::uint32_t total, std::uint64_t more, std::uint32_t& sum) {
+            sum = static_cast<std::uint32_t>(total + more);
+            return total + more < kNoVertex / 4 * std::uint64_t{3};
         };
         if (!add(before.splits_end, splits, block.splits_end) ||
             !add(before.vertices_end, vertices, block.vertices_end) ||
@@ -114,12 +148,13 @@ const char* decode_table(std::span<const std::byte> table, FileInfo& info, std::
         block.bytes = static_cast<std::uint32_t>(bytes);
         block.error = std::bit_cast<float>(std::bit_cast<std::uint32_t>(before.error) -
                                            static_cast<std::uint32_t>(fall));
-        block.checksum = get<std::uint32_t>(table, next);
-        next += 4;
+        block.checksum = get<std::uint32_t>(table, sums + i * sizeof(std::uint32_t));
         end += bytes;
         info.blocks.push_back(block);
         before = block;
     }
+    if (!only_zeros(stream.subspan(std::min(coder.taken(), stream.size()))))
+        return "the table is longer than it needs";
     info.file_bytes = end;
     info.splits = before.splits_end;
     info.vertices = before.vertices_end;

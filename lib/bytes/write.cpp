@@ -21,10 +21,14 @@ constexpr std::size_t kFitted = 1 << 16;
 
 /// Blocks of fewer bytes would pay more for their place in the table.
 constexpr std::size_t kLeastBlock = 512;
-constexpr std::size_t kUsualEntryBytes = 17;
+constexpr std::size_t kUsualEntryBytes = 11;
 
 /// Where a sweep ends the error falls: a block of this share of what it may hold ends there too.
 constexpr double kEnoughBlock = 0.7;
+/// Where it reaches a level that somebody may ask for, a block that is smaller still; so many bytes it must
+/// have.
+constexpr double kEnoughForLevel = 0.02;
+constexpr std::size_t kLeastLevelBlock = 128;
 
 Error cannot(std::string message) {
     return {ErrorCode::kArgument, std::move(message), Error::kNowhere, 0};
@@ -54,6 +58,31 @@ const char* options_fault(const WriteOptions& o) {
     if (o.color_bits < 2 || o.color_bits > 16) return "color_bits must be 2 to 16";
     return nullptr;
 }
+/// The base mesh, whole in the file's stream or its places and triangles as Draco's bytes; the encoder's next
+/// are the splits.
+Status write_base(RecordEncoder& encoder, BaseCoding coding, Encoded& out) {
+    auto draco = encode_base(encoder.base());
+    if (!draco) return draco.error();
+    const auto stream = [](RecordEncoder to, bool whole) {
+        RangeEncoder coder;
+        to.code_base(coder, whole);
+        return coder.finish();
+    };
+    out.base = stream(encoder, true);
+    bool whole = true;
+    if (!draco->empty()) {
+        const std::vector<std::byte> rest = stream(encoder, false);
+        whole = coding == BaseCoding::kLeast && out.base.size() <= draco->size() + rest.size();
+        if (!whole) {
+            out.base = *std::move(draco);
+            out.draco_bytes = out.base.size();
+            out.base.insert(out.base.end(), rest.begin(), rest.end());
+        }
+    }
+    RangeEncoder written;
+    encoder.code_base(written, whole);
+    return Ok{};
+}
 
 Result<Encoded> encode(const ProgressiveMesh& mesh, const WriteOptions& options) {
     if (const char* fault = options_fault(options)) return cannot(fault);
@@ -76,13 +105,14 @@ Result<Encoded> encode(const ProgressiveMesh& mesh, const WriteOptions& options)
     }
     WholeNumbers& numbers = out.numbers;
     numbers.details.origin = mesh.origin;
-    std::vector<Sweep> sweeps = schedule(mesh, numbers.traded);
     const auto may_be_rough = [](double tolerance) { return tolerance > 0; };
-    if (std::any_of(numbers.birth_tolerance.begin(), numbers.birth_tolerance.end(), may_be_rough) ||
-        std::any_of(numbers.move_tolerance.begin(), numbers.move_tolerance.end(), may_be_rough))
-        for (Sweep& sweep : sweeps)
-            sweep.error = std::min(sweep.error * (1 + static_cast<float>(kRoughShare)),
-                                   std::numeric_limits<float>::max());
+    const bool rough =
+        std::any_of(numbers.birth_tolerance.begin(), numbers.birth_tolerance.end(), may_be_rough) ||
+        std::any_of(numbers.move_tolerance.begin(), numbers.move_tolerance.end(), may_be_rough);
+    const double excess = rough ? 1 + kRoughShare : 1;
+    std::vector<Sweep> sweeps = schedule(mesh, numbers.traded, numbers.idle, excess);
+    for (Sweep& sweep : sweeps)
+        sweep.error = std::min(sweep.error * float(excess), std::numeric_limits<float>::max());
 
     // The first pass learns the weights of prediction.
     PlaceFit fit;
@@ -92,8 +122,10 @@ Result<Encoded> encode(const ProgressiveMesh& mesh, const WriteOptions& options)
         RecordEncoder first(mesh, numbers, sweeps);
         first.codec().fit = &fit;
         first.codec().fit_every = static_cast<std::uint32_t>(mesh.splits.size() / kFitted + 1);
-        first.code_base(look);
-        first.code_splits(look, [](const SplitPlan&, float, bool) { return false; });
+        first.code_base(look, true);
+        const auto nothing = [](const SplitPlan&, float, const Sweep*) { return false; };
+        if (const char* fault = first.code_splits(look, nothing))
+            return cannot(std::string("the record cannot be put in order: ") + fault);
     }
     numbers.details.weights = fit.solve();
 
@@ -102,14 +134,8 @@ Result<Encoded> encode(const ProgressiveMesh& mesh, const WriteOptions& options)
                       numbers.largest_group > 0);
     output.reserve(mesh.positions.size(), mesh.triangles.size(), mesh.splits.size(),
                    mesh.corner_changes.size(), mesh.moves.size());
-    auto base = encode_base(encoder.base());
-    if (!base) return base.error();
-    out.base = *std::move(base);
-    out.draco_bytes = out.base.size();
+    if (const auto base = write_base(encoder, options.base_coding, out); !base) return base.error();
     RangeEncoder coder;
-    encoder.code_base(coder);
-    const std::vector<std::byte> extras = coder.finish();
-    out.base.insert(out.base.end(), extras.begin(), extras.end());
     const std::size_t base_parts = std::max(mesh.base_vertices, mesh.base_triangles);
     if (out.base.size() * kPartsPerByte < base_parts)
         out.base.resize((base_parts + kPartsPerByte - 1) / kPartsPerByte);
@@ -118,8 +144,10 @@ Result<Encoded> encode(const ProgressiveMesh& mesh, const WriteOptions& options)
     // Blocks start small, so that the first bytes already refine, and grow with what precedes them.
     std::size_t before_blocks = kHeaderBytes + 64 + out.base.size();
     std::size_t target = 0;
+    // A sweep of rounds about doubles the mesh, and what ends within it promises nothing new.
+    const std::size_t growth = !sweeps.empty() && sweeps.front().kind == SweepKind::kRounds ? 1 : 3;
     const auto next_target = [&] {
-        target = std::min<std::size_t>(options.block_bytes, std::max(kLeastBlock, before_blocks / 3));
+        target = std::min<std::size_t>(options.block_bytes, std::max(kLeastBlock, before_blocks / growth));
     };
     next_target();
     std::uint32_t made = 0, ended = 0;
@@ -140,13 +168,16 @@ Result<Encoded> encode(const ProgressiveMesh& mesh, const WriteOptions& options)
         ended = made;
         next_target();
     };
-    encoder.code_splits(coder, [&](const SplitPlan& plan, float error, bool sweep_end) {
+    const auto coded = [&](const SplitPlan& plan, float error, const Sweep* ended_sweep) {
         output.add(plan, error);
         ++made;
-        if (coder.size() >= target || (sweep_end && double(coder.size()) >= kEnoughBlock * double(target)))
-            end_block();
+        const bool level = ended_sweep && ended_sweep->reaches_level && coder.size() >= kLeastLevelBlock;
+        const double enough = level ? kEnoughForLevel : ended_sweep ? kEnoughBlock : 1;
+        if (double(coder.size()) >= enough * double(target)) end_block();
         return made == ended;
-    });
+    };
+    if (const char* fault = encoder.code_splits(coder, coded))
+        return cannot(std::string("the record cannot be put in order: ") + fault);
     if (made > ended) end_block();
 
     const SplitCodec& codec = encoder.codec();

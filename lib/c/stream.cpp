@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "vsplit/geomorph.hpp"
 #include "vsplit/version.hpp"
 #include "vsplit/vsplit.h"
 
@@ -144,18 +145,13 @@ void vsplit_stream_free(vsplit_stream* s) {
 }
 
 void vsplit_stream_set_target(vsplit_stream* s, vsplit_target kind, double value) {
-    switch (kind) {
-        case VSPLIT_TARGET_TRIANGLES:
-            return s->stream.set_target({vsplit::Target::Kind::kTriangles, value});
-        case VSPLIT_TARGET_VERTICES:
-            return s->stream.set_target({vsplit::Target::Kind::kVertices, value});
-        case VSPLIT_TARGET_ERROR:
-            return s->stream.set_target(vsplit::Target::error(value));
-        case VSPLIT_TARGET_PIXELS:
-            return s->stream.set_target(vsplit::Target::pixels(value));
-        default:
-            return s->stream.set_target(vsplit::Target::ratio(value));
-    }
+    vsplit_stream_set_target_within(s, kind, value, UINT64_MAX);
+}
+void vsplit_stream_set_target_within(vsplit_stream* s, vsplit_target kind, double value,
+                                     uint64_t max_triangles) {
+    const bool known = static_cast<unsigned>(kind) <= VSPLIT_TARGET_PIXELS;
+    s->stream.set_target({known ? static_cast<vsplit::Target::Kind>(kind) : vsplit::Target::Kind::kRatio,
+                          value, max_triangles});
 }
 
 size_t vsplit_stream_wants(const vsplit_stream* s, vsplit_range* out, size_t capacity, uint64_t most_bytes) {
@@ -389,6 +385,19 @@ double vsplit_error_of_pixels(const vsplit_stream* s, const float eye[3], double
     return vsplit::error_of_pixels({{eye[0], eye[1], eye[2]}, vertical_fov, viewport_height},
                                    info->bounds_min, info->bounds_max,
                                    std::span<const float, 16>(to_world, 16), pixels);
+}
+
+void vsplit_share_triangles(const vsplit_stream* const* streams, const double* error_of_a_pixel, size_t count,
+                            uint64_t triangles, double pixels, double* errors) {
+    std::vector<vsplit::BudgetItem> items;
+    for (size_t i = 0; i < count; ++i) {
+        const double error = error_of_a_pixel[i];
+        if (streams[i]->stream.ready())
+            items.push_back({streams[i]->stream.info(), error >= 0 ? 1 / error : 0});
+    }
+    const std::vector<double> shares = vsplit::share_triangles(items, triangles, pixels);
+    for (size_t i = 0, taken = 0; i < count; ++i)
+        errors[i] = streams[i]->stream.ready() ? shares[taken++] : 0;
 }
 
 }  // extern "C"

@@ -58,17 +58,18 @@ std::span<const Float3> Geomorph::blend(double t) {
 
 namespace {
 
-/// The smallest error on the screen, the same for all, at which the sum of costs is within `budget`.
+/// The smallest error on the screen from `pixels` on, the same for all, at which the sum of costs is within
+/// `budget`.
 /// `cost` is what an item takes: after a block, or (null) for its base mesh alone.
 template <class Cost>
-std::vector<double> share(std::span<const BudgetItem> items, std::uint64_t budget, Cost cost) {
-    const auto error_for = [](const BudgetItem& item, double pixels) {
-        return item.pixels_a_unit > 0 ? pixels / item.pixels_a_unit : std::numeric_limits<double>::max();
+std::vector<double> share(std::span<const BudgetItem> items, std::uint64_t budget, double pixels, Cost cost) {
+    const auto error_for = [](const BudgetItem& item, double on_screen) {
+        return item.pixels_a_unit > 0 ? on_screen / item.pixels_a_unit : std::numeric_limits<double>::max();
     };
-    const auto sum_at = [&](double pixels) {
+    const auto sum_at = [&](double on_screen) {
         std::uint64_t sum = 0;
         for (const BudgetItem& item : items) {
-            const double error = error_for(item, pixels);
+            const double error = error_for(item, on_screen);
             const auto& blocks = item.info->blocks;
             if (double(item.info->base_error) <= error || blocks.empty()) {
                 sum += cost(*item.info, nullptr);
@@ -81,12 +82,12 @@ std::vector<double> share(std::span<const BudgetItem> items, std::uint64_t budge
         }
         return sum;
     };
-    double fine = 0, coarse = 1;
+    double fine = pixels > 0 ? pixels : 0, coarse = std::max(fine, 1.0);
     for (const BudgetItem& item : items)
         coarse = std::max(coarse, double(item.info->base_error) * std::max(item.pixels_a_unit, 0.0));
     if (std::isinf(coarse)) coarse = std::numeric_limits<double>::max() / 4;
-    if (sum_at(0) <= budget)
-        coarse = 0;
+    if (sum_at(fine) <= budget)
+        coarse = fine;
     else
         for (int i = 0; i < 60; ++i) {
             const double middle = fine + (coarse - fine) / 2;
@@ -99,14 +100,15 @@ std::vector<double> share(std::span<const BudgetItem> items, std::uint64_t budge
 
 }  // namespace
 
-std::vector<double> share_triangles(std::span<const BudgetItem> items, std::uint64_t triangles) {
-    return share(items, triangles, [](const FileInfo& info, const BlockInfo* block) -> std::uint64_t {
+std::vector<double> share_triangles(std::span<const BudgetItem> items, std::uint64_t triangles,
+                                    double pixels) {
+    return share(items, triangles, pixels, [](const FileInfo& info, const BlockInfo* block) -> std::uint64_t {
         return block ? block->triangles_end : info.base_triangles;
     });
 }
 
-std::vector<double> share_bytes(std::span<const BudgetItem> items, std::uint64_t bytes) {
-    return share(items, bytes, [](const FileInfo& info, const BlockInfo* block) {
+std::vector<double> share_bytes(std::span<const BudgetItem> items, std::uint64_t bytes, double pixels) {
+    return share(items, bytes, pixels, [](const FileInfo& info, const BlockInfo* block) {
         return block ? block->offset + block->bytes : info.data_offset;
     });
 }

@@ -20,14 +20,19 @@ std::size_t Stream::State::blocks_for_target() const {
 }
 
 std::size_t Stream::State::blocks_for_uniform() const {
+    return std::min(blocks_for_kind(), blocks_for_triangles(target.max_triangles));
+}
+
+std::size_t Stream::State::blocks_for_triangles(std::uint64_t count) const {
+    return blocks_until([&](const BlockInfo& b) { return b.triangles_end > count; });
+}
+
+std::size_t Stream::State::blocks_for_kind() const {
     switch (target.kind) {
-        case Target::Kind::kRatio: {
-            const std::uint64_t count = triangles_of_ratio();
-            return blocks_until([&](const BlockInfo& b) { return b.triangles_end > count; });
-        }
+        case Target::Kind::kRatio:
+            return blocks_for_triangles(triangles_of_ratio());
         case Target::Kind::kTriangles:
-            return blocks_until(
-                [&](const BlockInfo& b) { return b.triangles_end > clamped_count(target.value); });
+            return blocks_for_triangles(clamped_count(target.value));
         case Target::Kind::kVertices:
             return blocks_until(
                 [&](const BlockInfo& b) { return b.vertices_end > clamped_count(target.value); });
@@ -40,6 +45,10 @@ std::size_t Stream::State::blocks_for_uniform() const {
 }
 
 std::size_t Stream::State::level_for_target() const {
+    return std::min(level_for_kind(), live.level_for_triangles(target.max_triangles));
+}
+
+std::size_t Stream::State::level_for_kind() const {
     // Within what is decoded, error() of the last level is that of the table.
     const auto coarsest = [&](double most) {
         return double(error_after(decoded)) > most ? live.available() : live.level_for_error(most);
@@ -77,15 +86,20 @@ std::size_t Stream::State::blocks_for_selective() const {
         const double most = error_of_view(*view, info->bounds_min, info->bounds_max);
         return most > 0 ? until_error(most) : info->blocks.size();
     }
-    if (target.kind == Target::Kind::kError || target.kind == Target::Kind::kPixels)
-        return until_error(target.value);
+    const bool by_error = target.kind == Target::Kind::kError || target.kind == Target::Kind::kPixels;
+    const std::size_t most = by_error ? until_error(target.value) : info->blocks.size();
+    if (by_error && target.max_triangles >= info->triangles) return most;
     // A count: as many as the uniform level has, and then those that may be worth more than the last ones.
     const std::size_t uniform = blocks_for_uniform(), rank = rank_for_target();
-    if (rank >= selective->ranked()) return std::max(uniform, std::min(decoded + 1, info->blocks.size()));
-    return std::max(uniform, until_error(double(selective->error_at_rank(rank))));
+    if (rank >= selective->ranked()) return std::min(most, std::max(uniform, decoded + 1));
+    return std::min(most, std::max(uniform, until_error(double(selective->error_at_rank(rank)))));
 }
 
 std::size_t Stream::State::rank_for_target() const {
+    return std::min(rank_for_kind(), selective->rank_for_triangles(target.max_triangles));
+}
+
+std::size_t Stream::State::rank_for_kind() const {
     switch (target.kind) {
         case Target::Kind::kRatio:
             return selective->rank_for_triangles(triangles_of_ratio());

@@ -74,9 +74,13 @@ struct Stream::State {
     void drop_far(std::size_t keep);
     std::size_t blocks_for_target() const;
     std::size_t blocks_for_uniform() const;
+    std::size_t blocks_for_kind() const;
+    std::size_t blocks_for_triangles(std::uint64_t count) const;
     std::size_t blocks_for_selective() const;
     std::size_t level_for_target() const;
+    std::size_t level_for_kind() const;
     std::size_t rank_for_target() const;
+    std::size_t rank_for_kind() const;
     /// The first blocks, of which the last is enough.
     template <class Enough>
     std::size_t blocks_until(Enough is_enough) const {

@@ -100,8 +100,9 @@ VSPLIT_EXPORT double vsplit_failure_offset() {
 }
 
 /// The kinds are those of Target::Kind.
-VSPLIT_EXPORT void vsplit_set_target(int kind, double value) {
-    stream->set_target({static_cast<Target::Kind>(std::clamp(kind, 0, 4)), value});
+VSPLIT_EXPORT void vsplit_set_target(int kind, double value, double max_triangles) {
+    stream->set_target(
+        {static_cast<Target::Kind>(std::clamp(kind, 0, 4)), value, whole(max_triangles, 9e15)});
 }
 /// How many ranges are in vsplit_wanted(): offset and size of each.
 VSPLIT_EXPORT std::uint32_t vsplit_wants(double most_bytes, std::uint32_t ahead) {

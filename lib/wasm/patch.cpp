@@ -3,10 +3,19 @@
 #include "patch.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
 
 namespace vsplit::web {
+namespace {
+
+/// The nearest whole number to one within 16 bits: the last bits of a float that holds no smaller ones.
+std::int16_t rounded(float value) {
+    return std::int16_t(std::bit_cast<std::uint32_t>(value + 12582912.0f));
+}
+
+}  // namespace
 
 template <class Value>
 Value* Stretches<Value>::add(std::size_t first, std::size_t count) {
@@ -123,12 +132,12 @@ const Stretches<std::int16_t>& Patcher::normals(const LiveBuffers& buffers) {
             const float length = std::sqrt(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]);
             const bool sound = length > 0 && std::isfinite(length);
             const float scale = sound ? 32767 / length : 0;
-            for (int k = 0; k < 3; ++k) to[k] = std::int16_t(std::lrint(sound ? sum[k] * scale : 0));
+            for (int k = 0; k < 3; ++k) to[k] = rounded(sound ? sum[k] * scale : 0);
             if (!sound) to[2] = 32767;
             to[3] = 0;
         }
         const std::size_t size = 4 * (end - begin);
-        if (std::equal(run, run + size, &normal_[4 * begin])) continue;
+        if (std::memcmp(run, &normal_[4 * begin], size * sizeof run[0]) == 0) continue;
         std::copy_n(run, size, &normal_[4 * begin]);
         std::copy_n(run, size, normals_.add(4 * begin, size));
     }

@@ -205,6 +205,19 @@ test('wants() names what a target needs and nothing else, and feed() takes it fr
     stream.setTarget({ error: error * 1.5 });
     stream.update();
     assert.ok(stream.level.triangles <= at.triangles);
+    // With a number of triangles: the coarser of the two, and no bytes beyond it are needed.
+    const most = Math.floor(at.triangles * 2 / 3);
+    for (const target of [{ error, maxTriangles: most }, { pixels: error, maxTriangles: most }, { ratio: 1, maxTriangles: most }]) {
+        stream.setTarget({ ratio: 1 });
+        stream.update();
+        stream.setTarget(target);
+        assert.ok(stream.update().reached);
+        assert.ok(stream.level.triangles <= most && stream.level.triangles + 4 > most, `${stream.level.triangles} of ${most}`);
+        assert.ok(stream.needed(target) < stream.info.bytes);
+    }
+    stream.setTarget({ error, maxTriangles: stream.info.triangles });
+    stream.update();
+    assert.ok(stream.level.error <= error && stream.level.triangles > most);
 });
 
 test('a connection killed at a hundred points ends in the identical mesh', async (t) => {

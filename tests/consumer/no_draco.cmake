@@ -12,7 +12,7 @@ file(REMOVE_RECURSE ${WORK})
 must(${CMAKE_COMMAND} -S ${SOURCE}/tests/consumer/no_draco -B ${WORK}/build -G ${GENERATOR} -DCMAKE_BUILD_TYPE=Release
      -DCMAKE_CXX_COMPILER=${COMPILER} -DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER} -DVSPLIT_SOURCE=${SOURCE})
 must(${CMAKE_COMMAND} --build ${WORK}/build)
-must(${WORK}/build/bin/host_decoder ${SOURCE}/formats/golden/1-returning.pmesh)
+must(${WORK}/build/bin/host_decoder ${SOURCE}/formats/golden/1-draco.pmesh ${SOURCE}/formats/golden/1-returning.pmesh)
 file(GLOB_RECURSE library ${WORK}/build/libvsplit.so ${WORK}/build/libvsplit.dylib)
 if(NOT library)
   message(FATAL_ERROR "there is no shared library")

@@ -16,17 +16,18 @@ inline void reseal_all(Bytes& bytes) {
     if (parts[2].data()) {
         const std::span<const std::byte> table = parts[2];
         const auto begin = std::size_t(table.data() - bytes.data());
-        std::size_t at = 0, block = begin + table.size();
-        while (at < table.size()) {
-            std::uint64_t size = 0, other = 0;
-            bool whole = take_number(table, at, size);
-            for (int i = 0; i < 6 && whole; ++i) whole = take_number(table, at, other);
-            if (!whole || table.size() - at < 4) break;
-            if (size > bytes.size() - block) break;
-            put_at(bytes, begin + at, checksum32(std::span(bytes).subspan(block, size)));
-            at += 4;
-            block += size;
-        }
+        FileInfo info;
+        info.data_offset = begin + table.size();
+        info.base_error = std::numeric_limits<float>::max();
+        std::size_t at = 0;
+        std::uint64_t count = 0;
+        static_cast<void>(decode_table(table, info, at));
+        if (table_checksums(table, at, count))
+            for (const BlockInfo& block : info.blocks) {
+                if (block.offset + block.bytes > bytes.size()) break;
+                put_at(bytes, begin + at, checksum32(std::span(bytes).subspan(block.offset, block.bytes)));
+                at += 4;
+            }
     }
     reseal(bytes);
 }

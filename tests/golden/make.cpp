@@ -27,8 +27,10 @@ int main(int argc, char** argv) {
     if (argc != 2) return 2;
     const std::string folder = argv[1];
     bool good = true;
-    const auto write = [&](std::string name, const ProgressiveMesh& record, std::uint32_t bits) {
+    const auto write = [&](std::string name, const ProgressiveMesh& record, std::uint32_t bits,
+                           BaseCoding base_coding = BaseCoding::kLeast) {
         WriteOptions options;
+        options.base_coding = base_coding;
         options.position_bits = bits;
         options.block_bytes = 1024;
         for (char& c : name)
@@ -49,6 +51,8 @@ int main(int argc, char** argv) {
         write("attributes", test::decorated(test::naive_record(test::make_sphere(12, 8), 73), 74), bits);
         write("seam", test::decorated(test::seam(true), 75), bits);
         write("returning", test::decorated(test::returning(), 76), bits);
+        write("draco", test::decorated(test::naive_record(test::make_sphere(12, 8), 78, 30), 79), bits,
+              BaseCoding::kDraco);
     }
 
     const Bytes whole = write("torus small", test::naive_record(test::make_torus(9, 6), 77), 12);

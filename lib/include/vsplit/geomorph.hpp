@@ -54,11 +54,13 @@ struct BudgetItem {
 };
 
 /// Shares `triangles` among meshes so that the largest error on the screen is as small as their tables allow:
-/// the error, in each object's units, to hand to Target::error(). A mesh that is not seen gets its base mesh.
-/// Where even all base meshes are too many, each gets that. Linear in the tables' length, times about 60.
-std::vector<double> share_triangles(std::span<const BudgetItem> items, std::uint64_t triangles);
+/// the error, in each object's units, to hand to Target::error(). No mesh gets less than spans `pixels` on
+/// the screen, however much of the budget that leaves. A mesh that is not seen gets its base mesh. Where even
+/// all base meshes are too many, each gets that. Linear in the tables' length, times about 60.
+std::vector<double> share_triangles(std::span<const BudgetItem> items, std::uint64_t triangles,
+                                    double pixels = 0);
 
 /// The same for bytes that are fetched: of each file's front and the blocks that its error needs.
-std::vector<double> share_bytes(std::span<const BudgetItem> items, std::uint64_t bytes);
+std::vector<double> share_bytes(std::span<const BudgetItem> items, std::uint64_t bytes, double pixels = 0);
 
 }  // namespace vsplit

@@ -38,12 +38,17 @@ struct Target {
     };
     Kind kind = Kind::kRatio;
     double value = 1;
+    /// Whatever the kind asks for: never finer than the finest level with at most so many triangles. An error
+    /// on the screen and what the machine can draw, in one.
+    std::uint64_t max_triangles = ~std::uint64_t{0};
 
     static Target ratio(double share) { return {Kind::kRatio, share}; }
     static Target triangles(std::uint64_t count) { return {Kind::kTriangles, double(count)}; }
     static Target vertices(std::uint64_t count) { return {Kind::kVertices, double(count)}; }
     static Target error(double distance) { return {Kind::kError, distance}; }
     static Target pixels(double distance) { return {Kind::kPixels, distance}; }
+    /// The same with at most so many triangles: Target::pixels(e).at_most(200'000).
+    Target at_most(std::uint64_t count) const { return {kind, value, count}; }
 };
 
 /// Bounds of one call of Stream::update().

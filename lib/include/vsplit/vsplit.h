@@ -130,6 +130,10 @@ vsplit_stream* vsplit_stream_new(const vsplit_options* options);
 void vsplit_stream_free(vsplit_stream* stream);
 
 void vsplit_stream_set_target(vsplit_stream* stream, vsplit_target kind, double value);
+/* The same with at most `max_triangles`, whatever the kind asks for: an error on the screen and what the
+ * machine can draw, in one. */
+void vsplit_stream_set_target_within(vsplit_stream* stream, vsplit_target kind, double value,
+                                     uint64_t max_triangles);
 
 /* Writes at most `capacity` ranges, `most_bytes` in all, and returns how many: what the target needs next. 0:
  * all is there, or the stream is broken. */
@@ -220,6 +224,14 @@ vsplit_status vsplit_stream_copy_vertices(const vsplit_stream* stream, uint32_t 
  * is the object's transform, column by column. 0 before ready, or within the object's bounding sphere. */
 double vsplit_error_of_pixels(const vsplit_stream* stream, const float eye[3], double vertical_fov,
                               double viewport_height, const float to_world[16], double pixels);
+
+/* Shares `triangles` among `count` streams so that the largest error on the screen is as small as their
+ * tables allow. `error_of_a_pixel` has what vsplit_error_of_pixels(..., 1) gives for each; negative: not
+ * seen, the base mesh is enough. None gets less error than spans `pixels`, however much of the budget that
+ * leaves; 0: no such bound. Writes each one's error, for VSPLIT_TARGET_ERROR. Streams that are not ready take
+ * no part, and theirs is 0. */
+void vsplit_share_triangles(const vsplit_stream* const* streams, const double* error_of_a_pixel, size_t count,
+                            uint64_t triangles, double pixels, double* errors);
 
 #ifdef __cplusplus
 }

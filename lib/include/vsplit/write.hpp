@@ -13,6 +13,12 @@
 
 namespace vsplit {
 
+/// How places and triangles of the base mesh are written.
+enum class BaseCoding {
+    kLeast,  ///< In whatever takes fewer bytes: the file's own stream, as a rule.
+    kDraco,  ///< As Draco's bytes, unless it cannot code them: no triangles, or hardly any for the vertices.
+};
+
 struct WriteOptions {
     std::uint32_t block_bytes = 48 * 1024;  ///< Stored size that blocks aim at, 1 KiB to 16 MiB.
     /// Places lie on a lattice of 2^position_bits points along the longest side of the bounding box, 2 to 20.
@@ -22,6 +28,7 @@ struct WriteOptions {
     std::uint32_t texcoord_bits =
         12;  ///< Of each texture coordinate, between the least and the greatest, 2 to 24.
     std::uint32_t color_bits = 8;  ///< Of each part of a colour between 0 and 1, 2 to 16.
+    BaseCoding base_coding = BaseCoding::kLeast;
 };
 
 /// The file's bytes, the same for the same mesh and options. Painted weights, joints and attributes of no

@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The vsplit authors
 // SPDX-License-Identifier: MIT
 //
-// host_decoder FILE.pmesh: a library without Draco refuses the file, and reads it with the host's decoder, in
-// C++ and in C.
+// host_decoder DRACO.pmesh OTHER.pmesh: a library without Draco refuses a file with a base mesh in Draco's
+// bytes, and reads it with the host's decoder, in C++ and in C; it reads the other one, whose base mesh is in
+// the file's own stream, by itself.
 #include <draco/compression/decode.h>
 #include <draco/mesh/mesh.h>
 #include <vsplit/vsplit.h>
@@ -43,10 +44,14 @@ int decode(void*, const void* bytes, size_t size, uint32_t points, uint32_t face
 }  // namespace
 
 int main(int argc, char** argv) {
-    if (argc != 2) return 2;
-    std::ifstream in(argv[1], std::ios::binary);
-    const std::vector<char> file{std::istreambuf_iterator<char>(in), {}};
+    if (argc != 3) return 2;
+    const auto load = [](const char* path) {
+        std::ifstream in(path, std::ios::binary);
+        return std::vector<char>{std::istreambuf_iterator<char>(in), {}};
+    };
+    const std::vector<char> file = load(argv[1]), other = load(argv[2]);
     const auto bytes = std::as_bytes(std::span(file));
+    if (!vsplit::read_progressive_mesh(std::as_bytes(std::span(other))).ok()) return 11;
 
     const auto refused = vsplit::read_progressive_mesh(bytes);
     if (refused.ok() || refused.error().code != vsplit::ErrorCode::kUnsupported) return 3;

@@ -7,9 +7,10 @@ import type { VsplitErrorCode } from './errors.js';
 /**
  * How fine the mesh is to be. Ratio, triangles and vertices: the finest level with at most so many. An error is in the object's own units: the
  * coarsest level with at most that. `pixels` is one that spans so many on the screen (VsplitModel.errorForPixels()): the same, but small changes
- * are not followed.
+ * are not followed. With `maxTriangles` never more than so many, whatever else is asked: { pixels, maxTriangles } is an error on the screen and what
+ * the machine can draw, in one.
  */
-export type Target = { ratio: number } | { triangles: number } | { vertices: number } | { error: number } | { pixels: number };
+export type Target = ({ ratio: number } | { triangles: number } | { vertices: number } | { error: number } | { pixels: number }) & { maxTriangles?: number };
 
 export interface AttributeInfo {
     /** As in glTF: NORMAL, TEXCOORD_0, ... */

@@ -22,7 +22,7 @@ interface Exports {
     vsplit_set_file_size(bytes: number): number;
     vsplit_failure(): number;
     vsplit_failure_offset(): number;
-    vsplit_set_target(kind: number, value: number): void;
+    vsplit_set_target(kind: number, value: number, maxTriangles: number): void;
     vsplit_wants(mostBytes: number, ahead: number): number;
     vsplit_wanted(): number;
     vsplit_ready(): number;
@@ -135,7 +135,7 @@ export class VsplitStream {
     setTarget(target: Target) {
         const [kind, value] = 'ratio' in target ? [0, target.ratio] : 'triangles' in target ? [1, target.triangles] : 'vertices' in target ? [2, target.vertices]
             : 'error' in target ? [3, target.error] : [4, target.pixels];
-        this.wasm.vsplit_set_target(kind, value);
+        this.wasm.vsplit_set_target(kind, value, target.maxTriangles ?? kAll);
     }
 
     /** The bytes of the file that the target needs next, in the order in which they help; of `ahead` more blocks, too. */
@@ -153,7 +153,8 @@ export class VsplitStream {
         const front = this.wasm.vsplit_info(17);
         if (error !== undefined && baseError <= error) return front;
         const triangles = 'ratio' in target ? Math.round(Math.min(1, Math.max(0, target.ratio)) * this.info.triangles) : 'triangles' in target ? target.triangles : 0;
-        const enough = blocks.find((at) => error !== undefined ? at.error <= error : 'vertices' in target ? at.vertices > target.vertices : at.triangles > triangles);
+        const most = target.maxTriangles ?? Infinity;
+        const enough = blocks.find((at) => at.triangles > most || (error !== undefined ? at.error <= error : 'vertices' in target ? at.vertices > target.vertices : at.triangles > triangles));
         return (enough ?? blocks.at(-1))?.end ?? front;
     }
 
