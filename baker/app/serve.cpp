@@ -76,7 +76,7 @@ int ServeCommand::run() const {
     SignalWatch watch;
     FileServer server(std::move(*opened), options);
     const int bound = port == 0 ? server.bind_to_any_port(host) : server.bind_to_port(host, port) ? port : -1;
-    if (bound < 0) {
+    if (bound < 0 || !server.queue_connections()) {
         fmt::print(stderr, "vsplit: cannot listen on {} port {}: {}\n", host, port,
                    errno != 0 ? std::strerror(errno) : "no such address");
         return kFailed;

@@ -18,8 +18,8 @@ Connection::Connection(socket_t socket, const ConnectionLimits& limits, const St
 bool Connection::wait(short event, Clock::time_point since, std::chrono::milliseconds patience,
                       int stop_at) const {
     while (stopping_ < stop_at) {
-        const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(since + now_patient(patience) -
-                                                                                Clock::now())
+        const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(
+                              since + now_patient(patience) - Clock::now())
                               .count();
         if (left <= 0) return false;
         pollfd poll{socket_, event, 0};
@@ -67,8 +67,7 @@ ssize_t Connection::read(char* bytes, std::size_t size) {
 
 ssize_t Connection::write(const char* bytes, std::size_t size) {
     if (sent_ == 0) response_began_ = Clock::now();
-    const auto taken =
-        std::chrono::duration_cast<std::chrono::milliseconds>(Clock::now() - response_began_);
+    const auto taken = std::chrono::duration_cast<std::chrono::milliseconds>(Clock::now() - response_began_);
     if (taken > now_patient(limits_.stall_time) &&
         sent_ < limits_.slowest * static_cast<std::uint64_t>(taken.count()) / 1000)
         return -1;

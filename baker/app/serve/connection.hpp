@@ -13,7 +13,7 @@
 namespace vsplit::app {
 
 struct ConnectionLimits {
-    std::size_t request_bytes = 16 * 1024;  ///< Of a request line and all its headers.
+    std::size_t request_bytes = 16 * 1024;           ///< Of a request line and all its headers.
     std::chrono::milliseconds request_time{10'000};  ///< From its first byte to its last.
     std::chrono::milliseconds idle_time{5'000};      ///< Between requests.
     std::chrono::milliseconds stall_time{30'000};    ///< That the other side may take no byte.

@@ -132,7 +132,8 @@ FileServer::FileServer(Folder folder, ServerOptions options)
     : folder_(std::move(folder)), options_(std::move(options)) {
     new_task_queue = [this] { return new httplib::ThreadPool(options_.connections); };
     // Not SO_REUSEPORT, with which a second server would share the port and take every other request.
-    set_socket_options([](socket_t socket) {
+    set_socket_options([this](socket_t socket) {
+        listening_ = socket;
         const int yes = 1;
         setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
     });
@@ -167,6 +168,10 @@ FileServer::FileServer(Folder folder, ServerOptions options)
         }
         return HandlerResponse::Handled;
     }));
+}
+
+bool FileServer::queue_connections() {
+    return ::listen(listening_, SOMAXCONN) == 0;
 }
 
 void FileServer::stop_gently(std::chrono::milliseconds grace) {
