@@ -793,7 +793,7 @@ class Decoder:
         self.values, self.finer, self.groups = [], [], []
         self.cuts, self.places = Cuts(), Places(file.place_weights)
 
-        self.sweep, self.cursor, self.asked, self.round = 0, 0, set(), 0
+        self.sweep, self.cursor, self.asked, self.row = 0, 0, set(), {}
         self.marked_left = self.unmarked_left = 0
         self.error_bits, self.split_size = 0x7F7FFFFF, 0
         self.mark = [Bit() for _ in range(8 * 18 * 10)]
@@ -820,7 +820,7 @@ class Decoder:
         self.last_place, self.last_group = [0, 0, 0], 0
 
         # The progressive mesh.
-        self.behind, self.end = [], 0       # the order of vertices in batches
+        self.behind, self.end = [], 0       # the row of vertices that sweeps ask
         self.positions, self.weights, self.parents, self.born_triangles = [], [], [], []
         self.splits, self.corner_changes, self.moves = [], [], []
         self.attribute_values = [[] for _ in file.attributes]
@@ -876,11 +876,13 @@ class Decoder:
                 alive = len(self.live.at)
                 self.sweep += 1
                 self.older = alive
-                self.cursor, self.round, self.asked = 0, 0, set(range(alive))
+                self.cursor, self.asked = 0, set(range(alive))  # of rounds: places
+                self.lap, self.lap_end, self.piece, self.born, self.again = 0, alive, 0, alive, False
                 self.sparse = self.marked_left * 64 < alive
                 self.order = [0] if alive else []
                 while len(self.order) < alive:
                     self.order.append(self.behind[self.order[-1]])
+                self.row = {v: i for i, v in enumerate(self.order)}
             primary = NONE
             if self.marked_left:
                 self.marked_left -= 1
@@ -910,19 +912,35 @@ class Decoder:
                 self.cursor += 1
             raise Bad('a sweep marks fewer vertices than it announces')
         while True:
-            ahead = [v for v in self.asked if v >= self.cursor]
-            if not ahead:
-                self.round += 1
-                ahead = self.asked
-            v = self.cursor = min(ahead)
-            self.asked.remove(v)
+            self.next_place()
+            v = self.order[self.cursor] if self.cursor < self.older else self.cursor
             size, bumpy = self.bumpy(v)
             valence = min(max(len(self.live.star[v]), 3), 10) - 3
             touched, acted = min(self.sweep - self.live.touched[v], 2), min(self.sweep - self.live.acted[v], 2)
-            age = (touched * 3 + acted) * 2 + (self.round > 0)
+            age = (touched * 3 + acted) * 2 + self.again
             if coder.bit(self.mark[(valence * 18 + age) * 10 + bumpy]):
                 self.split_size += (size - self.split_size) >> 5
                 return v
+
+    def next_place(self):
+        """The next place to ask in rounds."""
+        while True:
+            end = min(self.piece + 1024, self.lap_end)
+            ahead = [p for p in self.asked if p >= self.cursor and (p < end or p >= self.born)]
+            if ahead:
+                self.cursor = min(ahead)
+                self.asked.remove(self.cursor)
+                return
+            if self.cursor > self.piece:
+                self.cursor, self.again = self.piece, True
+                continue
+            ahead = [p for p in self.asked if self.piece <= p < self.lap_end]
+            if not ahead:
+                if not self.asked:
+                    raise Bad('a sweep marks fewer vertices than it announces')
+                self.lap, self.lap_end, ahead = self.lap + 1, len(self.live.at), self.asked
+            self.piece = self.cursor = min(ahead) // 1024 * 1024
+            self.born, self.again = len(self.live.at), self.lap > 0
 
     def bumpy(self, v):
         size = log2(1 + sum(b * b for b in self.live.bump(v)))
@@ -1155,7 +1173,7 @@ class Decoder:
             live.touched[v] = self.sweep
         for v in range(first, len(live.at)):
             live.acted[v] = self.sweep
-        self.asked |= changed
+        self.asked |= {self.row.get(v, v) for v in changed}
         live.link_twins(first)
         error = struct.unpack('<f', struct.pack('<I', self.error_bits))[0]
         self.splits.append((len(self.positions), len(self.born_triangles), len(self.corner_changes), len(self.moves),

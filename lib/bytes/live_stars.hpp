@@ -31,6 +31,7 @@ struct alignas(64) LiveVertex {
     std::uint32_t star = 0;     ///< Triangles in it.
     std::uint32_t touched = 0;  ///< The last sweep that changed its star, from 1.
     std::uint32_t locked = 0;   ///< Of a batch: triangles of the star that it has changed, if touched in it.
+    std::uint32_t row = 0;      ///< Of rounds: its place among those asked, if it is older than the sweep.
     std::uint32_t acted = 0;    ///< The last in which it was born, split or moved.
     std::uint32_t twin = 0;     ///< The next in the ring of vertices born at the same place.
     std::uint32_t more = 0;     ///< Where its list goes on if it is long.

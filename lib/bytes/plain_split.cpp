@@ -167,9 +167,9 @@ void SplitCodec::apply_plain(const SplitPlan& plan) {
     if (shape_.lossless) finer.push_back(birth.finer);
     if (shape_.group_bits > 0) groups.insert(groups.end(), plan.groups.begin(), plan.groups.end());
     if (is_batch()) return;
-    for (std::uint32_t i = 0; i < star_.ring_size(); ++i) asks_.add(star_.ring[i]);
-    asks_.add(p);
-    asks_.add(child);
+    for (std::uint32_t i = 0; i < star_.ring_size(); ++i) ask_again(star_.ring[i]);
+    ask_again(p);
+    ask_again(child);
 }
 
 template const char* SplitCodec::code_plain(RangeDecoder&, std::uint32_t, const Cut&, const SplitPlan&,

@@ -10,11 +10,12 @@ namespace vsplit {
 
 namespace {
 
-void find_trades(const ProgressiveMesh& mesh, WholeNumbers& numbers) {
+void find_trades_and_idle(const ProgressiveMesh& mesh, WholeNumbers& numbers) {
     // Where each vertex is as the record goes: its birth, or its last move.
     std::vector<std::uint32_t> move_of(mesh.positions.size(), kNoVertex);
     const auto stride = static_cast<std::ptrdiff_t>(numbers.stride);
     numbers.traded.assign(mesh.positions.size(), false);
+    numbers.idle.assign(mesh.moves.size(), false);
     std::uint32_t begin = mesh.base_vertices, move = 0;
     for (const Split& split : mesh.splits) {
         for (std::uint32_t v = begin; v < split.vertices_end; ++v) {
@@ -36,6 +37,21 @@ void find_trades(const ProgressiveMesh& mesh, WholeNumbers& numbers) {
                  numbers.birth_finer[v] == (moved ? numbers.move_finer : numbers.birth_finer)[row]) &&
                 std::equal(values, values + stride, parent_values);
         }
+        for (std::uint32_t m = move; m < split.moves_end; ++m) {
+            const std::uint32_t v = mesh.moves[m].vertex, now = move_of[v];
+            const bool moved = now != kNoVertex;
+            const std::uint32_t row = moved ? now : v;
+            const auto values = numbers.move_values.begin() + m * stride,
+                       values_now =
+                           (moved ? numbers.move_values : numbers.birth_values).begin() + row * stride;
+            numbers.idle[m] =
+                numbers.move_at[m] == (moved ? numbers.move_at : numbers.birth_at)[row] &&
+                (!numbers.lossless ||
+                 numbers.move_finer[m] == (moved ? numbers.move_finer : numbers.birth_finer)[row]) &&
+                std::equal(values, values + stride, values_now);
+            for (std::uint32_t later = m + 1; later < split.moves_end; ++later)
+                if (mesh.moves[later].vertex == v) numbers.idle[m] = true;
+        }
         for (; move < split.moves_end; ++move) move_of[mesh.moves[move].vertex] = move;
         begin = split.vertices_end;
     }
@@ -54,8 +70,9 @@ void find_rough(const ProgressiveMesh& mesh, WholeNumbers& numbers) {
         const bool is_plain = to.vertices_end == from.vertices_end + 1 &&
                               to.moves_end == from.moves_end + 1 &&
                               mesh.parents[from.vertices_end] == mesh.moves[from.moves_end].vertex;
-        const bool replaces = is_plain && !numbers.traded[from.vertices_end];
+        const bool replaces = is_plain && !numbers.traded[from.vertices_end] && !numbers.idle[from.moves_end];
         for (std::uint32_t m = from.moves_end; m < to.moves_end; ++m) {
+            if (numbers.idle[m]) continue;  // replaces nothing
             const std::uint32_t v = mesh.moves[m].vertex;
             if (replaces && plain[v]) {
                 const double tolerance = kRoughShare * double(to.error) / numbers.lattice.step;
@@ -113,7 +130,7 @@ WholeNumbers whole_numbers(const ProgressiveMesh& mesh, const Lattice& lattice, 
         for (std::size_t m = 0; m < moves; ++m)
             out.move_values[m * out.stride + column] = ordered_number(mesh.moves[m].weight);
     }
-    find_trades(mesh, out);
+    find_trades_and_idle(mesh, out);
     find_rough(mesh, out);
     return out;
 }
@@ -209,9 +226,8 @@ void RecordEncoder::plan(std::uint32_t number, SplitPlan& out) {
         out.triangles.push_back({vertex_[c[0]], vertex_[c[1]], vertex_[c[2]]});
         if (numbers_.largest_group > 0) out.groups.push_back(mesh_.groups[t]);
     }
-    // The last move of a vertex is the one that counts; one that changes no number is none.
     for (std::uint32_t m = from.moves_end; m < to.moves_end; ++m) {
-        if (last_move(mesh_.moves[m].vertex, from, to) != m) continue;
+        if (numbers_.idle[m]) continue;
         const bool traded =
             std::any_of(births_.begin(), births_.end(), [&](const Born& b) { return b.traded_move == m; });
         if (traded) continue;
@@ -221,6 +237,7 @@ void RecordEncoder::plan(std::uint32_t number, SplitPlan& out) {
         move.tolerance = numbers_.move_tolerance[m];
         if (numbers_.lossless) move.finer = numbers_.move_finer[m];
         const auto values = numbers_.move_values.begin() + static_cast<std::ptrdiff_t>(m) * stride;
+        // A rough place may be where the exact one comes to lie.
         if (move.at == codec_.live.vertices[move.vertex].at &&
             (!numbers_.lossless || move.finer == codec_.finer[move.vertex]) &&
             std::equal(values, values + stride,
@@ -275,8 +292,8 @@ void RecordEncoder::fetch(const Sweep& sweep, std::size_t step) const {
 }
 
 template <class Coder>
-void RecordEncoder::code_splits(Coder& coder,
-                                const std::function<bool(const SplitPlan&, float, bool)>& done) {
+const char* RecordEncoder::code_splits(
+    Coder& coder, const std::function<bool(const SplitPlan&, float, const Sweep*)>& done) {
     bool block_ends = true;
     for (const Sweep& sweep : sweeps_) {
         const auto marked = std::count_if(sweep.steps.begin(), sweep.steps.end(),
@@ -290,22 +307,26 @@ void RecordEncoder::code_splits(Coder& coder,
             fetch(sweep, i);
             std::uint32_t primary = step.primary;
             if (!fault && primary != kNoVertex) fault = codec_.code_mark(coder, primary);
+            if (fault) return fault;
             plan(step.split, wanted_);
             assert(primary == kNoVertex || wanted_.births[0].parent == primary);
-            if (!fault) fault = codec_.code_split(coder, primary, wanted_, coded_);
+            fault = codec_.code_split(coder, primary, wanted_, coded_);
+            if (fault) return fault;
             codec_.apply(coded_);
             learn_numbers(wanted_, coded_);
-            block_ends = done(coded_, std::bit_cast<float>(head.error_bits), &step == &sweep.steps.back());
+            block_ends = done(coded_, std::bit_cast<float>(head.error_bits),
+                              &step == &sweep.steps.back() ? &sweep : nullptr);
         }
-        assert(!fault);
-        static_cast<void>(fault);
+        if (fault) return fault;
     }
+    return nullptr;
 }
 
 template void RecordEncoder::code_base(RangeEncoder&, bool);
 template void RecordEncoder::code_base(NoCoder&, bool);
-template void RecordEncoder::code_splits(RangeEncoder&,
-                                         const std::function<bool(const SplitPlan&, float, bool)>&);
-template void RecordEncoder::code_splits(NoCoder&, const std::function<bool(const SplitPlan&, float, bool)>&);
+template const char* RecordEncoder::code_splits(
+    RangeEncoder&, const std::function<bool(const SplitPlan&, float, const Sweep*)>&);
+template const char* RecordEncoder::code_splits(
+    NoCoder&, const std::function<bool(const SplitPlan&, float, const Sweep*)>&);
 
 }  // namespace vsplit

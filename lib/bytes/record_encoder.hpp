@@ -31,6 +31,8 @@ struct WholeNumbers {
     /// Per vertex: it is born where its only parent was, and the parent moves away with it alone. Then the
     /// two change names, and nothing moves.
     std::vector<bool> traded;
+    /// Per move: it changes no number, or is not its vertex's last in the split; the file does not have it.
+    std::vector<bool> idle;
     /// Per birth and move: how far from the planes around it, in steps, the place may be until it is
     /// replaced.
     std::vector<double> birth_tolerance, move_tolerance;
@@ -49,10 +51,12 @@ class RecordEncoder {
     /// Codes the base mesh: whole, or what Draco leaves.
     template <class Coder>
     void code_base(Coder& coder, bool whole);
-    /// Codes all splits; `done` is told of each after it was made, with its sweep's error and whether it was
-    /// the sweep's last, and says whether it was its block's last.
+    /// Codes all splits; `done` is told of each after it was made, with its sweep's error and, if it was the
+    /// sweep's last, the sweep; it says whether it was its block's last. Null, or how record and sweeps
+    /// contradict each other.
     template <class Coder>
-    void code_splits(Coder& coder, const std::function<bool(const SplitPlan&, float, bool)>& done);
+    [[nodiscard]] const char* code_splits(
+        Coder& coder, const std::function<bool(const SplitPlan&, float, const Sweep*)>& done);
 
   private:
     /// A vertex born in the split being planned.

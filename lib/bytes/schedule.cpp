@@ -12,8 +12,8 @@
 namespace vsplit {
 namespace {
 
-/// How far a sweep reaches ahead in the record: so many splits for each vertex alive.
-constexpr double kReach = 0.7;
+/// How far a sweep reaches ahead in the record: at most and at least so many splits for each vertex alive.
+constexpr double kMostReach = 1.4, kLeastReach = 0.3;
 
 /// A record made in batches has about three to five of them each time that its vertices double.
 constexpr std::size_t kBatchesADoubling = 8;
@@ -21,7 +21,7 @@ constexpr std::size_t kBatchesADoubling = 8;
 /// Which splits of a record must come before which.
 class Dependencies {
   public:
-    explicit Dependencies(const ProgressiveMesh& mesh);
+    Dependencies(const ProgressiveMesh& mesh, const std::vector<bool>& idle);
 
     std::vector<std::uint32_t> waits_for;  ///< Per split, how many others are still to come before it.
     /// The vertices whose stars a split changes, but for those that it bears.
@@ -45,7 +45,8 @@ class Dependencies {
     std::vector<std::size_t> around_begin_{0};
 };
 
-Dependencies::Dependencies(const ProgressiveMesh& mesh) : mesh_(mesh), corners_(mesh.triangles) {
+Dependencies::Dependencies(const ProgressiveMesh& mesh, const std::vector<bool>& idle)
+    : mesh_(mesh), corners_(mesh.triangles) {
     const auto count = static_cast<std::uint32_t>(mesh.splits.size());
     first_.assign(mesh.positions.size(), kNoVertex);
     next_.assign(3 * mesh.triangles.size(), kNoVertex);
@@ -73,7 +74,8 @@ Dependencies::Dependencies(const ProgressiveMesh& mesh) : mesh_(mesh), corners_(
         around.clear();
         for (std::uint32_t v = from.vertices_end; v < to.vertices_end; ++v)
             if (mesh.parents[v] != kNoVertex) acts.push_back(mesh.parents[v]);
-        for (std::uint32_t i = from.moves_end; i < to.moves_end; ++i) acts.push_back(mesh.moves[i].vertex);
+        for (std::uint32_t i = from.moves_end; i < to.moves_end; ++i)
+            if (!idle[i]) acts.push_back(mesh.moves[i].vertex);
         std::sort(acts.begin(), acts.end());
         acts.erase(std::unique(acts.begin(), acts.end()), acts.end());
         for (std::uint32_t t = from.triangles_end; t < to.triangles_end; ++t)
@@ -172,8 +174,8 @@ class Batches {
         for (std::uint32_t v = 0; v < mesh.base_vertices; ++v) order_.add(kNoVertex);
     }
 
-    /// Each as long as it can be; none if that makes too many of them.
-    std::vector<Sweep> sweeps() {
+    /// Each as long as it can be; none if that makes too many of them. `levels` as halvings() has them.
+    std::vector<Sweep> sweeps(const std::vector<std::uint32_t>& levels) {
         const auto count = static_cast<std::uint32_t>(mesh_.splits.size());
         const std::size_t doublings = std::bit_width(mesh_.positions.size() / std::max(alive_, 1u));
         std::vector<Sweep> out;
@@ -185,6 +187,8 @@ class Batches {
             ++sweep_;
             for (end = first; end < count && take(end, sweep); ++end) {
             }
+            const auto level = std::upper_bound(levels.begin(), levels.end(), first);
+            sweep.reaches_level = level != levels.end() && *level <= end;
             sort(sweep);
             for (const Sweep::Step& step : sweep.steps) bear(step.split);
         }
@@ -282,12 +286,27 @@ class Batches {
     bool closed_ = false;  // takes no more splits
 };
 
+/// How many splits make the mesh in the file as near as the record's is that has half as many triangles as
+/// the whole, a quarter, and so on; ascending.
+std::vector<std::uint32_t> halvings(const ProgressiveMesh& mesh, double excess) {
+    std::vector<std::uint32_t> levels;
+    for (std::uint64_t triangles = mesh.triangles.size() / 2; triangles > mesh.base_triangles;
+         triangles /= 2) {
+        const double error = error_at(mesh, level_for_triangles(mesh, triangles));
+        levels.push_back(static_cast<std::uint32_t>(level_for_error(mesh, error / excess)));
+    }
+    std::reverse(levels.begin(), levels.end());
+    return levels;
+}
+
 }  // namespace
 
-std::vector<Sweep> schedule(const ProgressiveMesh& mesh, const std::vector<bool>& traded) {
-    if (auto batches = Batches(mesh, traded).sweeps(); !batches.empty()) return batches;
+std::vector<Sweep> schedule(const ProgressiveMesh& mesh, const std::vector<bool>& traded,
+                            const std::vector<bool>& idle, double excess) {
+    const std::vector<std::uint32_t> levels = halvings(mesh, excess);
+    if (auto batches = Batches(mesh, traded).sweeps(levels); !batches.empty()) return batches;
     const auto count = static_cast<std::uint32_t>(mesh.splits.size());
-    Dependencies depends(mesh);
+    Dependencies depends(mesh, idle);
     std::vector<std::uint32_t> number(mesh.positions.size(), kNoVertex);  // as written
     for (std::uint32_t v = 0; v < mesh.base_vertices; ++v) number[v] = v;
     std::uint32_t alive = mesh.base_vertices;
@@ -314,11 +333,19 @@ std::vector<Sweep> schedule(const ProgressiveMesh& mesh, const std::vector<bool>
     std::vector<std::pair<std::uint32_t, std::uint32_t>> births;  // parent's number, vertex
     std::vector<Sweep> sweeps;
     AskList asks;
+    SweepOrder order;
+    order.reserve(mesh.positions.size());
+    for (std::uint32_t v = 0; v < alive; ++v) order.add(kNoVertex);
+    std::vector<std::uint32_t> asked, row(mesh.positions.size());
     for (std::uint32_t first = 0; first < count;) {
         Sweep& sweep = sweeps.emplace_back();
         sweep.error = mesh.splits[first].error;
+        const auto ahead = [&](double share) {
+            return first + std::max<std::uint64_t>(1, static_cast<std::uint64_t>(share * alive));
+        };
+        const auto level = std::lower_bound(levels.begin(), levels.end(), ahead(kLeastReach));
         const std::uint64_t reach =
-            first + std::max<std::uint64_t>(1, static_cast<std::uint64_t>(kReach * alive));
+            std::min(ahead(kMostReach), level == levels.end() ? count : std::uint64_t{*level});
         const auto make = [&](std::uint32_t s, std::uint32_t primary) {
             sweep.steps.push_back({s, primary});
             made[s] = true;
@@ -330,16 +357,22 @@ std::vector<Sweep> schedule(const ProgressiveMesh& mesh, const std::vector<bool>
             for (const auto& [parent, v] : births) {
                 if (traded[v]) number[mesh.parents[v]] = alive;
                 number[v] = traded[v] ? parent : alive;
+                order.add(parent);
+                row[alive] = alive;
                 asks.add(alive++);
+                asks.add(row[number[v]]);
             }
-            for (const std::uint32_t v : depends.around(s)) asks.add(number[v]);
+            for (const std::uint32_t v : depends.around(s)) asks.add(row[number[v]]);
             depends.each_follower(s, [&](std::uint32_t t) {
                 if (--depends.waits_for[t] == 0) make_ready(t);
             });
         };
+        // As a decoder asks: those that are there in a row, then what the sweep bears, by number.
+        order.list(asked);
+        for (std::uint32_t i = 0; i < asked.size(); ++i) row[asked[i]] = i;
         asks.begin(alive);
-        for (std::uint32_t v; (v = asks.next()) != kNoVertex;) {
-            const std::uint32_t s = ready[v];
+        for (std::uint32_t place; (place = asks.next()) != AskList::kNoPlace;) {
+            const std::uint32_t v = place < asked.size() ? asked[place] : place, s = ready[v];
             if (s >= reach) continue;
             ready[v] = kNoVertex;
             make(s, v);
@@ -352,6 +385,7 @@ std::vector<Sweep> schedule(const ProgressiveMesh& mesh, const std::vector<bool>
             make(s, kNoVertex);
         }
         while (first < count && made[first]) ++first;
+        sweep.reaches_level = level != levels.end() && *level <= first;
     }
     return sweeps;
 }

@@ -35,14 +35,19 @@ struct Sweep {
         steps;  ///< Those with parents, in the order in which they are asked; then those without.
     SweepKind kind = SweepKind::kRounds;
     float error = 0;  ///< Of the mesh before the sweep: of the first split not made yet.
+    /// After it, the file is as near as the record is with a half of the triangles, a quarter, and so on.
+    bool reaches_level = false;
 };
 
-/// Every split once. Two splits keep their order if one acts on a vertex (splits or moves it) in the star of
-/// a vertex that the other acts on; all others may change places, which leaves the mesh around each as it
-/// was. A record in which
-/// long rows of splits change different triangles is written in batches, else in rounds. `traded` tells of
-/// each vertex of the record whether it keeps its parent's number when it is born, and the parent gets the
-/// new one. `mesh` must be sound.
-std::vector<Sweep> schedule(const ProgressiveMesh& mesh, const std::vector<bool>& traded);
+/// Every split once; a sweep's error is the record's. Two splits keep their order if one acts on a vertex
+/// (splits or moves it) in the star of a vertex that the other acts on; all others may change places, which
+/// leaves the mesh around each as it was. A record in which long rows of splits change different triangles is
+/// written in batches, else in rounds, in sweeps that each reach such a level. `traded` tells of each vertex
+/// of the record whether it keeps its parent's number when it is born, and the parent gets the new one.
+/// `mesh` must be sound. `idle` tells of each
+/// move that the file does not have it. `excess` is what the file's errors will be over the record's, as a
+/// factor.
+std::vector<Sweep> schedule(const ProgressiveMesh& mesh, const std::vector<bool>& traded,
+                            const std::vector<bool>& idle, double excess);
 
 }  // namespace vsplit

@@ -59,9 +59,12 @@ const char* SplitCodec::code_head(Coder& coder, SweepHead& head) {
     ++sweep_;
     cursor_ = 0;
     older_ = alive;
-    if (!is_batch()) asks_.begin(alive);
     sparse_ = is_sparse(head.marked, alive);
-    if ((Coder::kWrites || Coder::kDecodes) && is_batch() && !sparse_) order_.list(asked_);
+    if (!(Coder::kWrites || Coder::kDecodes) || sparse_) return nullptr;
+    order_.list(asked_);
+    if (is_batch()) return nullptr;
+    asks_.begin(alive);
+    for (std::uint32_t i = 0; i < alive; ++i) live.vertices[asked_[i]].row = i;
     return nullptr;
 }
 
@@ -75,7 +78,7 @@ bool SplitCodec::ask(Coder& coder, std::uint32_t v, bool splits) {
     const std::size_t valence = std::clamp<std::uint32_t>(vertex.star, 3, 10) - 3;
     const std::size_t touched = std::min(sweep_ - vertex.touched, 2u),
                       acted = std::min(sweep_ - vertex.acted, 2u);
-    const std::size_t age = (touched * 3 + acted) * 2 + (asks_.round() > 0);
+    const std::size_t age = (touched * 3 + acted) * 2 + asks_.again();
     const auto bumpy = static_cast<std::size_t>(std::clamp((size - split_size_ + 6 * 256) >> 8, 0, 9));
     const bool answer = coder.bit(mark_[(valence * 18 + age) * 10 + bumpy], splits);
     if (answer) split_size_ += (size - split_size_) >> 5;
@@ -98,6 +101,14 @@ bool SplitCodec::ask_batch(Coder& coder, std::uint32_t v, bool splits) {
     return answer;
 }
 
+void SplitCodec::fetch_ahead(std::uint32_t place) const {
+    // The vertex, its list, then its ring.
+    constexpr std::array<std::uint32_t, 3> kAhead = {96, 64, 32};
+    if (place + kAhead[0] < older_) live.fetch(asked_[place + kAhead[0]]);
+    if (place + kAhead[1] < older_) live.fetch(asked_[place + kAhead[1]], 0);
+    if (place + kAhead[2] < older_) live.fetch(asked_[place + kAhead[2]], 1);
+}
+
 template <class Coder>
 const char* SplitCodec::code_mark(Coder& coder, std::uint32_t& primary) {
     if (!Coder::kWrites && !Coder::kDecodes) return nullptr;
@@ -111,13 +122,9 @@ const char* SplitCodec::code_mark(Coder& coder, std::uint32_t& primary) {
         return nullptr;
     }
     if (is_batch()) {
-        constexpr std::array<std::uint32_t, 3> kAhead = {96, 64, 32};
         for (; cursor_ < older_; ++cursor_) {
             const std::uint32_t v = asked_[cursor_];
-            // What comes is read from memory meanwhile: the vertex, its list, then its ring.
-            if (cursor_ + kAhead[0] < older_) live.fetch(asked_[cursor_ + kAhead[0]]);
-            if (cursor_ + kAhead[1] < older_) live.fetch(asked_[cursor_ + kAhead[1]], 0);
-            if (cursor_ + kAhead[2] < older_) live.fetch(asked_[cursor_ + kAhead[2]], 1);
+            fetch_ahead(cursor_);
             if (kind_ == SweepKind::kBatch && unlocked(live.vertices[v]) == 0) continue;
             if (!ask_batch(coder, v, v == primary)) continue;
             primary = v;
@@ -125,13 +132,10 @@ const char* SplitCodec::code_mark(Coder& coder, std::uint32_t& primary) {
         }
         return "a sweep marks fewer vertices than it announces";
     }
-    for (std::uint32_t v; (v = asks_.next()) != kNoVertex;) {
-        // What the next in line need comes from memory meanwhile: the list of the seventh, the ring of the
-        // fourth.
-        std::uint64_t line = asks_.after(v);
-        for (int i = 1; line != 0 && i <= 7; ++i, line &= line - 1)
-            if (i == 4 || i == 7)
-                live.fetch(v + 1 + static_cast<std::uint32_t>(std::countr_zero(line)), i == 4 ? 1 : 0);
+    const auto at = [&](std::uint32_t place) { return place < older_ ? asked_[place] : place; };
+    for (std::uint32_t place; (place = asks_.next()) != AskList::kNoPlace;) {
+        if (!asks_.again()) fetch_ahead(place);
+        const std::uint32_t v = at(place);
         if (ask(coder, v, v == primary)) {
             primary = v;
             return nullptr;

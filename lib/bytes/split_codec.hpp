@@ -176,11 +176,14 @@ class SplitCodec {
     }
     /// A triangle that the batch has changed has a corner that it bore.
     bool is_locked(const Triangle& t) const { return t[0] >= older_ || t[1] >= older_ || t[2] >= older_; }
+    void ask_again(std::uint32_t v) { asks_.add(v < older_ ? live.vertices[v].row : v); }
+    /// Has the memory read ahead that asking, and then splitting, needs: at this place of asked_ soon.
+    void fetch_ahead(std::uint32_t place) const;
     /// A vertex whose star changes: it is to be asked again, or has no triangle locked yet.
     LiveVertex& touch(std::uint32_t v) {
         LiveVertex& vertex = live.vertices[v];
         vertex.touch(sweep_);
-        if (!is_batch()) asks_.add(v);
+        if (!is_batch()) ask_again(v);
         return vertex;
     }
     /// The run that a set of corners is, if it is one that CutModel codes.
@@ -213,9 +216,9 @@ class SplitCodec {
     PlaceModel place_;
 
     // Sweeps.
-    AskList asks_;
-    SweepOrder order_;                  ///< Of all vertices,
-    std::vector<std::uint32_t> asked_;  ///< and of those that a batch asks.
+    AskList asks_;      ///< Of rounds: places in asked_, then what the sweep bears, by number.
+    SweepOrder order_;  ///< Of all vertices,
+    std::vector<std::uint32_t> asked_;  ///< as they were at the sweep's beginning.
     SweepKind kind_ = SweepKind::kRounds;
     SymbolModel<2> kinds_;
     std::uint32_t sweep_ = 0, cursor_ = 0;

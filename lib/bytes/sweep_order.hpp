@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The vsplit authors
 // SPDX-License-Identifier: MIT
 //
-// The order in which batches ask vertices: each right behind the parent that bore it, so that what is near in
+// The order in which sweeps ask vertices: each right behind the parent that bore it, so that what is near in
 // the order is near on the surface, and vertices and triangles of one sweep are born near each other in
 // memory too.
 #pragma once

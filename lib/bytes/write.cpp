@@ -25,6 +25,10 @@ constexpr std::size_t kUsualEntryBytes = 11;
 
 /// Where a sweep ends the error falls: a block of this share of what it may hold ends there too.
 constexpr double kEnoughBlock = 0.7;
+/// Where it reaches a level that somebody may ask for, a block that is smaller still; so many bytes it must
+/// have.
+constexpr double kEnoughForLevel = 0.02;
+constexpr std::size_t kLeastLevelBlock = 128;
 
 Error cannot(std::string message) {
     return {ErrorCode::kArgument, std::move(message), Error::kNowhere, 0};
@@ -101,13 +105,14 @@ Result<Encoded> encode(const ProgressiveMesh& mesh, const WriteOptions& options)
     }
     WholeNumbers& numbers = out.numbers;
     numbers.details.origin = mesh.origin;
-    std::vector<Sweep> sweeps = schedule(mesh, numbers.traded);
     const auto may_be_rough = [](double tolerance) { return tolerance > 0; };
-    if (std::any_of(numbers.birth_tolerance.begin(), numbers.birth_tolerance.end(), may_be_rough) ||
-        std::any_of(numbers.move_tolerance.begin(), numbers.move_tolerance.end(), may_be_rough))
-        for (Sweep& sweep : sweeps)
-            sweep.error = std::min(sweep.error * (1 + static_cast<float>(kRoughShare)),
-                                   std::numeric_limits<float>::max());
+    const bool rough =
+        std::any_of(numbers.birth_tolerance.begin(), numbers.birth_tolerance.end(), may_be_rough) ||
+        std::any_of(numbers.move_tolerance.begin(), numbers.move_tolerance.end(), may_be_rough);
+    const double excess = rough ? 1 + kRoughShare : 1;
+    std::vector<Sweep> sweeps = schedule(mesh, numbers.traded, numbers.idle, excess);
+    for (Sweep& sweep : sweeps)
+        sweep.error = std::min(sweep.error * float(excess), std::numeric_limits<float>::max());
 
     // The first pass learns the weights of prediction.
     PlaceFit fit;
@@ -118,7 +123,9 @@ Result<Encoded> encode(const ProgressiveMesh& mesh, const WriteOptions& options)
         first.codec().fit = &fit;
         first.codec().fit_every = static_cast<std::uint32_t>(mesh.splits.size() / kFitted + 1);
         first.code_base(look, true);
-        first.code_splits(look, [](const SplitPlan&, float, bool) { return false; });
+        const auto nothing = [](const SplitPlan&, float, const Sweep*) { return false; };
+        if (const char* fault = first.code_splits(look, nothing))
+            return cannot(std::string("the record cannot be put in order: ") + fault);
     }
     numbers.details.weights = fit.solve();
 
@@ -137,8 +144,10 @@ Result<Encoded> encode(const ProgressiveMesh& mesh, const WriteOptions& options)
     // Blocks start small, so that the first bytes already refine, and grow with what precedes them.
     std::size_t before_blocks = kHeaderBytes + 64 + out.base.size();
     std::size_t target = 0;
+    // A sweep of rounds about doubles the mesh, and what ends within it promises nothing new.
+    const std::size_t growth = !sweeps.empty() && sweeps.front().kind == SweepKind::kRounds ? 1 : 3;
     const auto next_target = [&] {
-        target = std::min<std::size_t>(options.block_bytes, std::max(kLeastBlock, before_blocks / 3));
+        target = std::min<std::size_t>(options.block_bytes, std::max(kLeastBlock, before_blocks / growth));
     };
     next_target();
     std::uint32_t made = 0, ended = 0;
@@ -159,13 +168,16 @@ Result<Encoded> encode(const ProgressiveMesh& mesh, const WriteOptions& options)
         ended = made;
         next_target();
     };
-    encoder.code_splits(coder, [&](const SplitPlan& plan, float error, bool sweep_end) {
+    const auto coded = [&](const SplitPlan& plan, float error, const Sweep* ended_sweep) {
         output.add(plan, error);
         ++made;
-        if (coder.size() >= target || (sweep_end && double(coder.size()) >= kEnoughBlock * double(target)))
-            end_block();
+        const bool level = ended_sweep && ended_sweep->reaches_level && coder.size() >= kLeastLevelBlock;
+        const double enough = level ? kEnoughForLevel : ended_sweep ? kEnoughBlock : 1;
+        if (double(coder.size()) >= enough * double(target)) end_block();
         return made == ended;
-    });
+    };
+    if (const char* fault = encoder.code_splits(coder, coded))
+        return cannot(std::string("the record cannot be put in order: ") + fault);
     if (made > ended) end_block();
 
     const SplitCodec& codec = encoder.codec();

@@ -139,7 +139,7 @@ TEST_CASE("A sweep asks all, then those that changed, and ends") {
     AskList asks;
     asks.begin(130);
     for (std::uint32_t v = 0; v < 130; ++v) REQUIRE(asks.next() == v);
-    REQUIRE(asks.next() == kNoVertex);
+    REQUIRE(asks.next() == AskList::kNoPlace);
     asks.begin(64);
     REQUIRE(asks.next() == 0);
     asks.add(0);
@@ -148,8 +148,33 @@ TEST_CASE("A sweep asks all, then those that changed, and ends") {
     for (std::uint32_t v = 1; v < 64; ++v) REQUIRE(asks.next() == v);
     asks.add(10);
     REQUIRE(asks.next() == 64);
-    REQUIRE(asks.round() == 0);
+    REQUIRE(!asks.again());
     REQUIRE(asks.next() == 10);
-    REQUIRE(asks.round() == 1);
-    REQUIRE(asks.next() == kNoVertex);
+    REQUIRE(asks.again());
+    REQUIRE(asks.next() == AskList::kNoPlace);
+}
+
+TEST_CASE("A sweep asks a piece, and what it bears, until nothing of it is left") {
+    constexpr std::uint32_t kPiece = AskList::kPiece, kRow = 2 * kPiece + 5;
+    AskList asks;
+    asks.begin(kRow);
+    for (std::uint32_t v = 0; v < kPiece; ++v) REQUIRE(asks.next() == v);
+    asks.add(7);
+    asks.add(kRow);
+    REQUIRE(asks.next() == kRow);
+    REQUIRE(!asks.again());
+    REQUIRE(asks.next() == 7);
+    REQUIRE(asks.again());
+    asks.add(kPiece + 3);  // waits for its own
+    for (std::uint32_t v = kPiece; v < 2 * kPiece; ++v) {
+        REQUIRE(asks.next() == v);
+        REQUIRE(!asks.again());
+    }
+    asks.add(8);  // behind: what is there and what was born before come in the next lap
+    asks.add(kRow);
+    for (std::uint32_t v = 2 * kPiece; v < kRow; ++v) REQUIRE(asks.next() == v);
+    REQUIRE(asks.next() == 8);
+    REQUIRE(asks.again());
+    REQUIRE(asks.next() == kRow);
+    REQUIRE(asks.next() == AskList::kNoPlace);
 }
