@@ -18,7 +18,7 @@ namespace vsplit {
 inline constexpr std::array<std::uint16_t, 8> kRoundStarOdds = {187, 75, 150, 384, 994, 1543, 1775, 1439};
 inline constexpr std::array<std::uint16_t, 18> kRoundAgeOdds = {
     377, 362, 404, 634, 493, 736, 1024, 1024, 634, 1024, 917, 1024, 1024, 1024, 1024, 1024, 451, 1024};
-inline constexpr std::array<std::uint16_t, 10> kRoundBumpOdds = {178, 299, 369, 425,  540,
+inline constexpr std::array<std::uint16_t, 10> kRoundBumpOdds = {178, 299, 369,  425,  540,
                                                                  700, 864, 1004, 1120, 1098};
 inline constexpr std::array<std::uint16_t, 10> kBatchStarOdds = {105,  48,   91,   334,  1066,
                                                                  2701, 4153, 5072, 2784, 1942};
@@ -29,7 +29,8 @@ inline constexpr std::array<std::uint16_t, 10> kBatchBumpOdds = {199, 348,  429,
 
 /// Of an answer with odds in 1/1024, as if eight had been heard.
 inline BitModel expected_answer(std::uint64_t odds) {
-    return {static_cast<std::uint32_t>(std::clamp<std::uint64_t>(odds * 65536 / (odds + 1024), 64, 65472)), 8};
+    return {static_cast<std::uint32_t>(std::clamp<std::uint64_t>(odds * 65536 / (odds + 1024), 64, 65472)),
+            8};
 }
 
 /// Models of answers in rounds: [star][age][bump].
