@@ -62,9 +62,7 @@ for (const file of files) {
     const worst = runs.flatMap((run) => run.longest).toSorted((a, b) => b.cpu - a.cpu)[0];
     rows.push(`| ${runs[0].file} | ${[0, 1, 2].map((i) => median(runs.map((run) => run.longest[i].cpu)).toFixed(1)).join(' | ')} | ${worst.cpu.toFixed(1)}: ${worst.what} | ${median(runs.map((run) => run.update)).toFixed(1)} | ${median(runs.map((run) => run.seconds)).toFixed(1)} |`);
 }
-const text = `<!-- SPDX-FileCopyrightText: 2026 The vsplit authors -->
-<!-- SPDX-License-Identifier: MIT -->
-# The page's main thread while it streams
+const text = `# The page's main thread while it streams
 
 Written by \`./run bench web\`: ${values.runs} runs a file in Chromium at ${values.size}, ${cpus().length} cores, GL by software on the same cores, ${new Date().toISOString().slice(0, 10)}. A task is what the main thread does without looking
 at input, from navigation to the whole mesh, by Chromium's trace; its CPU time is what that thread computed (\`tdur\`). Times in milliseconds, medians of the runs. The bar is 16 ms for the longest task.
