@@ -330,12 +330,15 @@ class Batches {
 
 /// How many splits make the mesh in the file as near as the record's is that has half as many triangles as
 /// the whole, a quarter, and so on; ascending.
-std::vector<std::uint32_t> halvings(const ProgressiveMesh& mesh, double excess) {
+std::vector<std::uint32_t> halvings(const ProgressiveMesh& mesh, const std::function<float(float)>& raised) {
     std::vector<std::uint32_t> levels;
     for (std::uint64_t triangles = mesh.triangles.size() / 2; triangles > mesh.base_triangles;
          triangles /= 2) {
         const double error = error_at(mesh, level_for_triangles(mesh, triangles));
-        levels.push_back(static_cast<std::uint32_t>(level_for_error(mesh, error / excess)));
+        const auto near = std::partition_point(mesh.splits.begin(), mesh.splits.end(), [&](const Split& s) {
+            return double(raised(s.error)) > error;
+        });
+        levels.push_back(static_cast<std::uint32_t>(near - mesh.splits.begin()));
     }
     std::reverse(levels.begin(), levels.end());
     return levels;
@@ -344,8 +347,8 @@ std::vector<std::uint32_t> halvings(const ProgressiveMesh& mesh, double excess) 
 }  // namespace
 
 std::vector<Sweep> schedule(const ProgressiveMesh& mesh, const std::vector<bool>& traded,
-                            const std::vector<bool>& idle, double excess) {
-    const std::vector<std::uint32_t> levels = halvings(mesh, excess);
+                            const std::vector<bool>& idle, const std::function<float(float)>& raised) {
+    const std::vector<std::uint32_t> levels = halvings(mesh, raised);
     if (auto batches = Batches(mesh, traded).sweeps(levels); !batches.empty()) return batches;
     const auto count = static_cast<std::uint32_t>(mesh.splits.size());
     Dependencies depends(mesh, idle);
