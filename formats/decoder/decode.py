@@ -151,18 +151,18 @@ def quotient(a, b):
 
 # ---- The range coder and its models
 
-RATES = [131072 // (2 * n + 3) for n in range(128)]
+RATES = [131072 // (2 * n + 3) for n in range(256)]
 
 
 class Bit:
-    __slots__ = ('one', 'seen')
+    __slots__ = ('one', 'seen', 'memory')
 
-    def __init__(self, one=32768, seen=0):
-        self.one, self.seen = one, seen
+    def __init__(self, one=32768, seen=0, memory=64):
+        self.one, self.seen, self.memory = one, seen, memory
 
     def learn(self, bit):
         rate = RATES[self.seen]
-        if self.seen + 1 < 64:
+        if self.seen + 1 < self.memory:
             self.seen += 1
         if bit:
             self.one += ((65535 - 24 - self.one) * rate) >> 16
@@ -269,7 +269,7 @@ class Residual:
         self.second = []
         for r in range(64):
             second, third = SECOND_PRIOR[min(max(r - 14, 0), 9)]
-            self.second.append([Bit(655 * second, 6), Bit(655 * third, 6), Bit(655 * third, 6)])
+            self.second.append([Bit(655 * p, 6, 256) for p in (second, third, third)])
         self.sign = [Bit() for _ in range(64)]
         self.digits = []
         for row in range(rows):
@@ -287,7 +287,7 @@ class Residual:
                     model.nodes[node] = Bit(min(max(one, 64), 65472), 6)
                 self.digits.append(model)
 
-    def decode(self, coder, scale, kind, side=None):
+    def decode(self, coder, scale, kind, side=None, likely=0):
         scale = min(scale, 55)
         aside = 0 if scale < self.rows else (scale + 2 - self.rows) // 2
         row = scale - 2 * aside
@@ -306,7 +306,7 @@ class Residual:
         read = read << rest | coder.raw(rest)
         if read == 0:
             return 0
-        negative = coder.raw(1) if side is None else coder.bit(self.sign[side])
+        negative = coder.raw(1) if side is None else coder.bit(self.sign[side]) != likely
         return -read if negative else read
 
 
@@ -592,6 +592,12 @@ def departure(difference, scale):
     return 0 if now + 2 < scale else 2 if now > scale + 1 else 1
 
 
+def side_class(from_parent, from_wings, scale):
+    size = lambda x: half_octave(abs(x) >> 2) - scale
+    far, off = min(max((size(from_parent) + 6) >> 1, 0), 4), min(max((size(from_wings) + 4) >> 1, 0), 2)
+    return 6 * far + 2 * off + ((from_parent < 0) != (from_wings < 0))
+
+
 def rough_shift(scale, bent):
     digits = (scale - 1) // 2 if scale > 0 else 0
     return 0 if bent == 2 else max(0, digits - (4 if bent == 0 else 6))
@@ -600,8 +606,8 @@ def rough_shift(scale, bent):
 class Places:
     def __init__(self, weights):
         self.weights = weights
-        self.first = [Residual(15, 6, prior) for prior in ALONG_PRIORS]
-        self.second = [Residual(15, 6, prior) for prior in ALONG_PRIORS]
+        self.first = [Residual(15, 8, prior) for prior in ALONG_PRIORS]
+        self.second = [Residual(15, 18, prior) for prior in ALONG_PRIORS]
         self.third = [Residual(15, 4, prior) for prior in ACROSS_PRIORS]
         self.free = Residual(1, 1, ALONG_PRIORS[0])
 
@@ -658,8 +664,14 @@ class Places:
         bent = 0 if flatness + 6 < mean_scale else 1 if flatness + 2 < mean_scale else 2
         at_a, at_b = (within(origin[x] + ((along[x] + 8) >> 4)) for x in (a, b))
         shift_a, shift_b = (rough_shift(x, bent) if rough else 0 for x in (scale_a, scale_b))
-        regular = 3 * (ring_class == 3)
-        step_a = self.first[kind].decode(coder, scale_a - 2 * shift_a, bent + regular)
+        six, regular = ring_class == 3, 0
+        if six:
+            middles = [[p[x] + q[x] for p, q in zip(corners[:3], corners[3:])] for x in (a, b)]
+            skew = sum(abs(u - v) + abs(v - w) + abs(w - u) for u, v, w in middles)
+            regular = min(max((half_octave(skew) - half_octave(spread[a] + spread[b]) + 5) >> 1, 0), 4)
+        sides = [side_class(along[x], along[x] - guides[1][x], scale) for x, scale in ((a, scale_a), (b, scale_b))]
+        step_a = self.first[kind].decode(coder, scale_a - 2 * shift_a, 3 + regular if six else bent,
+                                         sides[0], int(along[a] < 0))
         out[a] = within(at_a + (step_a << shift_a))
         sum_a, sum_b = sum(o[a] for o in corners), sum(o[b] for o in corners)
         squares = count * sum(o[a] * o[a] for o in corners) - sum_a * sum_a
@@ -672,7 +684,8 @@ class Places:
             lean = 768 * abs(products) // squares * (-1 if products < 0 else 1)
         at_b = within(at_b + ((lean * (out[a] - at_a) + 512) >> 10))
         missed_a = departure(step_a, scale_a - 2 * shift_a)
-        step_b = self.second[kind].decode(coder, scale_b - 2 * shift_b, missed_a + regular)
+        step_b = self.second[kind].decode(coder, scale_b - 2 * shift_b, missed_a + (3 + 3 * regular if six else 0),
+                                          sides[1], int(along[b] < 0))
         out[b] = within(at_b + (step_b << shift_b))
         missed = max(missed_a, departure(step_b, scale_b - 2 * shift_b))
         leans = 2 * min(max(rise - mean_scale + 11, 0), 11) + sinks

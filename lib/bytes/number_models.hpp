@@ -67,15 +67,15 @@ template <std::size_t Rows, std::size_t Kinds = 1>
 struct ResidualModel {
     static constexpr std::uint32_t kNoSide = 64, kMostScale = 55;
     std::array<SymbolModel<5>, Rows * Kinds> digits;
-    std::array<std::array<BitModel, 3>, 64> second;
+    std::array<std::array<SteadyBit, 3>, 64> second;
     std::array<BitModel, kNoSide> sign;
 
     explicit ResidualModel(const DigitPrior& prior = kAlongPriors[0]);
 
-    /// `side`: what tells the sign, 0 to 63; kNoSide: nothing does.
+    /// `side`: what tells whether the sign is the `likely` one, 0 to 63; kNoSide: nothing does.
     template <class Coder>
     std::int32_t code(Coder& coder, std::uint32_t scale, std::uint32_t kind, std::int32_t value,
-                      std::uint32_t side = kNoSide) {
+                      std::uint32_t side = kNoSide, bool likely = false) {
         scale = std::min(scale, kMostScale);
         const std::uint32_t aside = scale < Rows ? 0 : (scale + 2 - static_cast<std::uint32_t>(Rows)) / 2,
                             row = scale - 2 * aside;
@@ -99,8 +99,8 @@ struct ResidualModel {
         }
         read = read << rest | coder.raw(rest, low);
         if (read == 0) return 0;
-        const bool negative =
-            side == kNoSide ? coder.raw(1, value < 0) != 0 : coder.bit(sign[side], value < 0);
+        const bool negative = side == kNoSide ? coder.raw(1, value < 0) != 0
+                                              : coder.bit(sign[side], (value < 0) != likely) != likely;
         return negative ? -static_cast<std::int32_t>(read) : static_cast<std::int32_t>(read);
     }
 };
@@ -127,7 +127,7 @@ ResidualModel<Rows, Kinds>::ResidualModel(const DigitPrior& prior) {
     for (std::size_t i = 0; i < second.size(); ++i)
         for (std::size_t j = 0; j < 3; ++j)
             second[i][j] =
-                BitModel(kSecondPrior[std::min<std::size_t>(i < 14 ? 0 : i - 14, 9)][j > 0] * 655u, kSeen);
+                SteadyBit(kSecondPrior[std::min<std::size_t>(i < 14 ? 0 : i - 14, 9)][j > 0] * 655u, kSeen);
 }
 
 }  // namespace vsplit

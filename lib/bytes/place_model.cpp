@@ -126,6 +126,13 @@ VSPLIT_INLINE void PlaceModel::measure(const Around& around, std::uint32_t count
     g.across = c;
     for (std::size_t a = 0; a < 3; ++a)
         g.spread[a] = static_cast<std::uint32_t>((spread[a] / 4 * kReciprocals[count]) >> 16);
+    if (g.ring_class == 3) {
+        const auto& o = around.offset;
+        for (std::size_t a = 0; a < 3; ++a) {
+            const std::int32_t x = o[0][a] + o[3][a], y = o[1][a] + o[4][a], z = o[2][a] + o[5][a];
+            g.skew[a] = static_cast<std::uint32_t>(std::abs(x - y) + std::abs(y - z) + std::abs(z - x));
+        }
+    }
     // How one axis follows the other, and distances of the polygon's corners, and of the point predicted,
     // from the plane through their middle.
     const auto height = [&](std::int64_t x, std::int64_t y, std::int64_t z) {

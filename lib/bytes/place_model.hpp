@@ -21,6 +21,7 @@ enum class PlaceKind : std::uint8_t { kBirth, kBirthMoving, kMove };
 inline constexpr std::size_t kPlaceKinds = 3;
 inline constexpr std::size_t kPlaceClasses = 7;  ///< Of the ring: 2, 3, ... 6, 7 and more vertices; open.
 inline constexpr std::size_t kPlaceGuides = 3;
+inline constexpr std::uint32_t kRegularities = 5;  ///< Classes of how regular a ring of six corners is.
 
 /// Weights of the guides in 1/64, along the surface and across it.
 using PlaceWeights =
@@ -40,6 +41,9 @@ struct PlaceGuides {
         normal{};            ///< Of the ring's polygon; its largest component is that of `across`.
     std::size_t across = 2;  ///< The axis coded last.
     std::int32_t lean = 0;   ///< By how much the second axis follows the first, in 1/1024.
+    /// Of a ring of six corners: how far apart the middles of the three pairs of opposite ones are along each
+    /// axis, in 1/6.
+    std::array<std::uint32_t, 3> skew{};
     std::array<std::uint32_t, 3> spread{};  ///< Mean distance of ring and prediction along each axis, in 1/4.
     std::int32_t rise =
         0;               ///< log2 of how high the point predicted is over the ring, in half octaves of 1/4.
@@ -78,10 +82,11 @@ class PlaceModel {
     void measure(const Around& around, std::uint32_t count, PlaceGuides& guides) const;
 
     PlaceWeights weights_;
-    using Along = ResidualModel<kScaleRows, 6>;
     using Across = ResidualModel<kScaleRows, 4>;
-    Along first_[kPlaceKinds] = {Along(kAlongPriors[0]), Along(kAlongPriors[1]), Along(kAlongPriors[2])};
-    Along second_[kPlaceKinds] = {Along(kAlongPriors[0]), Along(kAlongPriors[1]), Along(kAlongPriors[2])};
+    using First = ResidualModel<kScaleRows, 3 + kRegularities>;
+    using Second = ResidualModel<kScaleRows, 3 + 3 * kRegularities>;
+    First first_[kPlaceKinds] = {First(kAlongPriors[0]), First(kAlongPriors[1]), First(kAlongPriors[2])};
+    Second second_[kPlaceKinds] = {Second(kAlongPriors[0]), Second(kAlongPriors[1]), Second(kAlongPriors[2])};
     Across third_[kPlaceKinds] = {Across(kAcrossPriors[0]), Across(kAcrossPriors[1]),
                                   Across(kAcrossPriors[2])};
     ResidualModel<1> free_;
@@ -98,6 +103,26 @@ inline std::uint32_t departure_class(std::int32_t difference, std::uint32_t scal
     const std::uint32_t class_now =
         half_octave(static_cast<std::uint64_t>(4 * std::abs(std::int64_t{difference})));
     return class_now + 2 < scale ? 0 : class_now > scale + 1 ? 2 : 1;
+}
+
+/// How regular a ring of six corners is: the middles of opposite ones against the ring's extent.
+inline std::uint32_t regularity_class(std::uint32_t skew, std::uint32_t spread) {
+    const auto log = [](std::uint32_t x) { return static_cast<std::int32_t>(half_octave(x)); };
+    return static_cast<std::uint32_t>(
+        std::clamp((log(skew) - log(spread) + 5) >> 1, 0, static_cast<std::int32_t>(kRegularities) - 1));
+}
+
+/// What the sign of a difference along the surface goes by: how far the prediction is from the parent, and
+/// from guide 1 (the middle between the wings) and on which side, both against the extent of the ring.
+inline std::uint32_t side_class(std::int64_t from_parent, std::int64_t from_wings, std::uint32_t scale) {
+    const auto size = [&](std::int64_t x) {
+        const auto log = half_octave(static_cast<std::uint64_t>(x < 0 ? -x : x) >> 2);
+        return static_cast<std::int32_t>(log) - static_cast<std::int32_t>(scale);
+    };
+    const std::int32_t far = std::clamp((size(from_parent) + 6) >> 1, 0, 4),
+                       off = std::clamp((size(from_wings) + 4) >> 1, 0, 2);
+    const bool opposite = (from_parent < 0) != (from_wings < 0);
+    return static_cast<std::uint32_t>(6 * far + 2 * off) + std::uint32_t{opposite};
 }
 
 /// By how many digits a rough place is coarser along the surface: to an eighth of the ring's extent where it
@@ -127,17 +152,24 @@ Lattice3 PlaceModel::code(Coder& coder, PlaceGuides& g, const Lattice3& place, b
         return shift == 0 ? difference : (difference + (1 << (shift - 1))) >> shift;
     };
     // A vertex of six neighbours is often of a regular part of the mesh, and where it is expected.
-    const std::uint32_t regular = g.ring_class == 3;
+    const bool six = g.ring_class == 3;
+    const std::uint32_t regular =
+        six ? regularity_class(g.skew[a] + g.skew[b], g.spread[a] + g.spread[b]) : 0;
+    const auto side_of = [&](std::size_t axis, std::uint32_t scale) {
+        return side_class(along[axis], along[axis] - g.guide[1][axis], scale);
+    };
     const std::int32_t at_a = predicted(a), unleant_b = predicted(b);
-    const std::int32_t step_a = first_[kind].code(coder, scale_a - 2 * shift_a, bent + 3 * regular,
-                                                  in_steps(place[a] - at_a, shift_a));
+    const std::int32_t step_a =
+        first_[kind].code(coder, scale_a - 2 * shift_a, six ? 3 + regular : bent,
+                          in_steps(place[a] - at_a, shift_a), side_of(a, scale_a), along[a] < 0);
     out[a] = within_reach(at_a + std::int64_t{step_a} * (1 << shift_a));
     const std::uint32_t missed_a = departure_class(step_a, scale_a - 2 * shift_a);
     // Where the ring leans, the second axis goes with the first.
     const std::int32_t at_b =
         within_reach(unleant_b + ((std::int64_t{g.lean} * (out[a] - at_a) + 512) >> 10));
-    const std::int32_t step_b = second_[kind].code(coder, scale_b - 2 * shift_b, missed_a + 3 * regular,
-                                                   in_steps(place[b] - at_b, shift_b));
+    const std::int32_t step_b =
+        second_[kind].code(coder, scale_b - 2 * shift_b, missed_a + (six ? 3 + 3 * regular : 0),
+                           in_steps(place[b] - at_b, shift_b), side_of(b, scale_b), along[b] < 0);
     out[b] = within_reach(at_b + std::int64_t{step_b} * (1 << shift_b));
     const std::uint32_t missed = std::max(missed_a, departure_class(step_b, scale_b - 2 * shift_b));
     // Along the plane of the ring, from the point that the second row of weights predicts.

@@ -23,27 +23,29 @@
 namespace vsplit {
 
 /// The rate at which a model that has seen n bits learns from the next: about 1 / (n + 1.5), in 1/65536.
-inline constexpr std::uint32_t kFastestRates = 64;
-inline constexpr std::array<std::uint16_t, kFastestRates> kLearningRates = [] {
-    std::array<std::uint16_t, kFastestRates> rates{};
-    for (std::uint32_t n = 0; n < kFastestRates; ++n)
+inline constexpr std::uint32_t kLearningSteps = 256;
+inline constexpr std::array<std::uint16_t, kLearningSteps> kLearningRates = [] {
+    std::array<std::uint16_t, kLearningSteps> rates{};
+    for (std::uint32_t n = 0; n < kLearningSteps; ++n)
         rates[n] = static_cast<std::uint16_t>(131072u / (2 * n + 3));
     return rates;
 }();
 
-/// How likely the next bit of one kind is 1, learnt from those before it.
-class BitModel {
+/// How likely the next bit of one kind is 1, learnt from the last `Memory` before it or so.
+template <std::uint32_t Memory>
+class LearningBit {
   public:
-    BitModel() = default;
+    static_assert(Memory <= kLearningSteps);
+    LearningBit() = default;
     /// A prior: the probability of 1 in 1/65536, as if `seen` bits had said so.
-    BitModel(std::uint32_t one, std::uint32_t seen)
+    LearningBit(std::uint32_t one, std::uint32_t seen)
         : one_(static_cast<std::uint16_t>(one)), seen_(static_cast<std::uint16_t>(seen)) {}
 
     /// In 1/65536, kept where neither bit is impossible.
     std::uint32_t one() const { return one_; }
     VSPLIT_INLINE void learn(bool bit) {
         const std::uint32_t rate = kLearningRates[seen_];
-        if (seen_ + 1u < kFastestRates) ++seen_;
+        if (seen_ + 1u < Memory) ++seen_;
         if (bit)
             one_ = static_cast<std::uint16_t>(one_ + (((65535u - kLeast - one_) * rate) >> 16));
         else
@@ -54,6 +56,9 @@ class BitModel {
     static constexpr std::uint32_t kLeast = 24;
     std::uint16_t one_ = 32768, seen_ = 0;
 };
+/// What changes as a mesh is refined, and what hardly does.
+using BitModel = LearningBit<64>;
+using SteadyBit = LearningBit<256>;
 
 /// So many zeros may be missing at the end of a stream.
 inline constexpr std::size_t kStreamTail = 4;
@@ -62,7 +67,8 @@ class RangeEncoder {
   public:
     static constexpr bool kDecodes = false, kWrites = true;
 
-    VSPLIT_INLINE bool bit(BitModel& model, bool value) {
+    template <class Model>
+    VSPLIT_INLINE bool bit(Model& model, bool value) {
         weighed(model.one(), value);
         model.learn(value);
         return value;
@@ -149,7 +155,10 @@ class RangeEncoder {
 /// Takes the encoder's part and writes nothing, for a pass that only looks.
 struct NoCoder {
     static constexpr bool kDecodes = false, kWrites = false;
-    bool bit(BitModel&, bool value) { return value; }
+    template <class Model>
+    bool bit(Model&, bool value) {
+        return value;
+    }
     bool weighed(std::uint32_t, bool value) { return value; }
     std::uint32_t raw(std::uint32_t, std::uint32_t value) { return value; }
     std::uint32_t point(std::uint32_t) { return 0; }
@@ -167,7 +176,8 @@ class RangeDecoder {
         for (int i = 0; i < 4; ++i) code_ = (code_ << 8) | next();
     }
 
-    VSPLIT_INLINE bool bit(BitModel& model, bool = false) {
+    template <class Model>
+    VSPLIT_INLINE bool bit(Model& model, bool = false) {
         const bool value = weighed(model.one());
         model.learn(value);
         return value;
