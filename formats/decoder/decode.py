@@ -9,6 +9,7 @@ Python's standard library; a base mesh in Draco's bytes is decoded by the comman
 draco). It believes the writer where the C++ reader distrusts it: an oracle for what the bytes mean, not for
 what is wrong with them.
 """
+import itertools
 import math
 import os
 import struct
@@ -261,6 +262,25 @@ ACROSS_PRIORS = [
     [770, 959, 1038, 1120, 953, 791, 484, 242, 111, 55, 36, 20, 12, 6, 4, 2],
     [1397, 1347, 872, 665, 229, 132, 44, 15, 5, 3, 2, 1, 1, 1, 1, 1]]
 SECOND_PRIOR = [(46, 49), (46, 48), (45, 48), (41, 46), (33, 42), (25, 36), (16, 30), (13, 28), (20, 35), (26, 37)]
+
+
+# Odds that a vertex splits in 1/1024, by the parts of the context: star, age (6 touched + 2 acted + again), bump; and
+# star, locked triangles, acted, bump.
+ROUND_ODDS = [[187, 75, 150, 384, 994, 1543, 1775, 1439],
+              [377, 362, 404, 634, 493, 736, 1024, 1024, 634, 1024, 917, 1024, 1024, 1024, 1024, 1024, 451, 1024],
+              [178, 299, 369, 425, 540, 700, 864, 1004, 1120, 1098]]
+BATCH_ODDS = [[105, 48, 91, 334, 1066, 2701, 4153, 5072, 2784, 1942],
+              [1512, 1369, 714, 994, 260, 1024, 118],
+              [187, 603, 373],
+              [199, 348, 429, 503, 714, 994, 1315, 1671, 1757, 1226]]
+
+
+def answers(parts):
+    models = []
+    for odds in itertools.product(*parts):
+        odds = math.prod(odds) >> 10 * (len(parts) - 1)
+        models.append(Bit(min(max(odds * 65536 // (odds + 1024), 64), 65472), 8))
+    return models
 
 
 class Residual:
@@ -809,8 +829,7 @@ class Decoder:
         self.sweep, self.cursor, self.asked, self.row = 0, 0, set(), {}
         self.marked_left = self.unmarked_left = 0
         self.error_bits, self.split_size = 0x7F7FFFFF, 0
-        self.mark = [Bit() for _ in range(8 * 18 * 10)]
-        self.batch_mark = [Bit() for _ in range(10 * 7 * 3 * 10)]
+        self.mark, self.batch_mark = answers(ROUND_ODDS), answers(BATCH_ODDS)
         self.kind, self.kinds, self.older = 0, Symbol(2), 0
         self.marked, self.unmarked, self.error, self.gap = Number(), Number(), Number(), Number()
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "ask_list.hpp"
+#include "ask_priors.hpp"
 #include "cut_model.hpp"
 #include "live_stars.hpp"
 #include "normal_model.hpp"
@@ -226,8 +227,8 @@ class SplitCodec {
     bool sparse_ = false;
     std::uint32_t error_bits_;
     std::int32_t split_size_ = 0;
-    std::array<BitModel, 8 * 18 * 10> mark_;
-    std::array<BitModel, 10 * 7 * 3 * 10> batch_mark_;
+    std::array<BitModel, 8 * 18 * 10> mark_ = round_answers();
+    std::array<BitModel, 10 * 7 * 3 * 10> batch_mark_ = batch_answers();
     NumberModel marked_, unmarked_, error_, gap_;
 
     // Splits.
