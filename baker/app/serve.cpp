@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <pthread.h>
 #include <signal.h>
+#include <sys/resource.h>
 
 #include <cerrno>
 #include <cstring>
@@ -67,10 +68,15 @@ int ServeCommand::run() const {
                            Error::kNowhere, 0});
     ServerOptions options;
     options.allowed_origin = origin == "none" ? "" : origin;
+    // Each connection is one file, and each answer another.
+    if (rlimit files{}; getrlimit(RLIMIT_NOFILE, &files) == 0) {
+        files.rlim_cur = files.rlim_max;
+        setrlimit(RLIMIT_NOFILE, &files);
+    }
     SignalWatch watch;
     FileServer server(std::move(*opened), options);
     const int bound = port == 0 ? server.bind_to_any_port(host) : server.bind_to_port(host, port) ? port : -1;
-    if (bound < 0) {
+    if (bound < 0 || !server.queue_connections()) {
         fmt::print(stderr, "vsplit: cannot listen on {} port {}: {}\n", host, port,
                    errno != 0 ? std::strerror(errno) : "no such address");
         return kFailed;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <cassert>
+#include <limits>
 
 namespace vsplit {
 
@@ -65,6 +66,7 @@ void find_rough(const ProgressiveMesh& mesh, WholeNumbers& numbers) {
     if (numbers.lossless) return;
     std::vector<std::uint32_t> move_of(mesh.positions.size(), kNoVertex);
     std::vector<bool> plain(mesh.positions.size(), false);  // is the place at hand of a plain split?
+    const Roughness roughness(mesh);
     Split from{mesh.base_vertices, mesh.base_triangles, 0, 0, 0};
     for (const Split& to : mesh.splits) {
         const bool is_plain = to.vertices_end == from.vertices_end + 1 &&
@@ -75,7 +77,8 @@ void find_rough(const ProgressiveMesh& mesh, WholeNumbers& numbers) {
             if (numbers.idle[m]) continue;  // replaces nothing
             const std::uint32_t v = mesh.moves[m].vertex;
             if (replaces && plain[v]) {
-                const double tolerance = kRoughShare * double(to.error) / numbers.lattice.step;
+                const double tolerance = roughness.of(double(to.error)) / numbers.lattice.step;
+                if (tolerance > 0) numbers.roughness = roughness;
                 (move_of[v] == kNoVertex ? numbers.birth_tolerance[v] : numbers.move_tolerance[move_of[v]]) =
                     tolerance;
             }
@@ -88,6 +91,16 @@ void find_rough(const ProgressiveMesh& mesh, WholeNumbers& numbers) {
 }
 
 }  // namespace
+
+Roughness::Roughness(const ProgressiveMesh& mesh) : none_(false) {
+    constexpr std::size_t kCoarsest = 16;  // so many times fewer vertices than the whole
+    most_fine_ = error_at(mesh, level_for_vertices(mesh, mesh.positions.size() / kCoarsest)) / 8;
+}
+
+float Roughness::raised(float error) const {
+    if (none_) return error;
+    return static_cast<float>(std::min(error + of(error), double(std::numeric_limits<float>::max())));
+}
 
 WholeNumbers whole_numbers(const ProgressiveMesh& mesh, const Lattice& lattice, const WriteOptions& options) {
     WholeNumbers out;

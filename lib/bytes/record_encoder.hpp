@@ -4,6 +4,7 @@
 // A record in whole numbers, given to the codec in the canonical order.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <vector>
@@ -15,8 +16,21 @@
 
 namespace vsplit {
 
-/// Places that will be replaced may add this share to the error.
-inline constexpr double kRoughShare = 0.125;
+/// How much places that will be replaced may add to the error: an eighth of it, a sixteenth in the coarsest
+/// levels, where few bytes are saved.
+class Roughness {
+  public:
+    Roughness() = default;  ///< None.
+    explicit Roughness(const ProgressiveMesh& mesh);
+    /// Never falls with the error, so that what may be added until a place is replaced is no more before.
+    double of(double error) const { return std::min(error / 8, std::max(error / 16, most_fine_)); }
+    /// What a file tells of a mesh that is off by `error`.
+    float raised(float error) const;
+
+  private:
+    double most_fine_ = 0;
+    bool none_ = true;
+};
 
 /// Every place and value of a progressive mesh as the stream has it.
 struct WholeNumbers {
@@ -36,6 +50,7 @@ struct WholeNumbers {
     /// Per birth and move: how far from the planes around it, in steps, the place may be until it is
     /// replaced.
     std::vector<double> birth_tolerance, move_tolerance;
+    Roughness roughness;  ///< None if no place may be rough.
 
     StreamShape shape() const { return shape_of(details, weights, lossless, largest_group); }
 };

@@ -3,6 +3,7 @@
 #include "schedule.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <span>
 
@@ -57,8 +58,10 @@ Dependencies::Dependencies(const ProgressiveMesh& mesh, const std::vector<bool>&
     struct Touch {
         std::uint32_t split, next;
     };
-    std::vector<std::uint32_t> actor(mesh.positions.size(), kNoVertex),
-        touched(mesh.positions.size(), kNoVertex);
+    struct Last {
+        std::uint32_t actor = kNoVertex, touch = kNoVertex;
+    };
+    std::vector<Last> last(mesh.positions.size());
     std::vector<Touch> touches;
     std::uint32_t unused = kNoVertex;
     std::vector<std::uint32_t> before;  // what each split waits for, split after split
@@ -67,9 +70,48 @@ Dependencies::Dependencies(const ProgressiveMesh& mesh, const std::vector<bool>&
     around_.reserve(9 * std::size_t{count});
     around_begin_.reserve(std::size_t{count} + 1);
     waits_for.assign(count, 0);
+
+    // A record leaps over the mesh: the memory of the first parent's star is read ahead, one corner and one
+    // touch of each of the next splits at a time.
+    constexpr std::uint32_t kAhead = 16;
+    struct Ahead {
+        std::uint32_t parent = kNoVertex, corner = kNoVertex, triangle = kNoVertex, touch = kNoVertex;
+        bool open = false;
+    };
+    std::array<Ahead, kAhead> line;
+    const auto advance = [&](Ahead& ahead) {
+        if (!ahead.open) {
+            if (ahead.parent == kNoVertex) return;
+            ahead.open = true;
+            ahead.corner = first_[ahead.parent];
+            ahead.touch = last[ahead.parent].touch;
+        } else {
+            if (ahead.triangle != kNoVertex)
+                for (const std::uint32_t v : corners_[ahead.triangle]) __builtin_prefetch(&last[v], 1);
+            ahead.triangle = ahead.corner == kNoVertex ? kNoVertex : ahead.corner / 3;
+            if (ahead.corner != kNoVertex) ahead.corner = next_[ahead.corner];
+            if (ahead.touch != kNoVertex) ahead.touch = touches[ahead.touch].next;
+        }
+        if (ahead.corner != kNoVertex) {
+            __builtin_prefetch(&corners_[ahead.corner / 3], 1);
+            __builtin_prefetch(&next_[ahead.corner], 1);
+        }
+        if (ahead.touch != kNoVertex) __builtin_prefetch(&touches[ahead.touch], 1);
+    };
     Split from{mesh.base_vertices, mesh.base_triangles, 0, 0, 0};
     for (std::uint32_t s = 0; s < count; ++s) {
         const Split& to = mesh.splits[s];
+        for (Ahead& ahead : line) advance(ahead);
+        if (s + kAhead < count) {
+            Ahead& ahead = line[s % kAhead] = {};
+            const std::uint32_t child = mesh.splits[s + kAhead - 1].vertices_end;
+            // Not of one that is still to be born: it has nothing yet.
+            if (child < mesh.parents.size() && mesh.parents[child] < from.vertices_end) {
+                ahead.parent = mesh.parents[child];
+                __builtin_prefetch(&first_[ahead.parent]);
+                __builtin_prefetch(&last[ahead.parent], 1);
+            }
+        }
         acts.clear();
         around.clear();
         for (std::uint32_t v = from.vertices_end; v < to.vertices_end; ++v)
@@ -92,25 +134,24 @@ Dependencies::Dependencies(const ProgressiveMesh& mesh, const std::vector<bool>&
         around_begin_.push_back(around_.size());
         waits.clear();
         for (const std::uint32_t v : around)
-            if (v < from.vertices_end && actor[v] != kNoVertex) waits.push_back(actor[v]);
+            if (v < from.vertices_end && last[v].actor != kNoVertex) waits.push_back(last[v].actor);
         for (const std::uint32_t v : acts) {
-            for (std::uint32_t i = touched[v]; i != kNoVertex;) {
+            for (std::uint32_t i = last[v].touch; i != kNoVertex;) {
                 waits.push_back(touches[i].split);
                 const std::uint32_t next = touches[i].next;
                 touches[i].next = unused;
                 unused = i;
                 i = next;
             }
-            touched[v] = kNoVertex;
-            actor[v] = s;
+            last[v] = {s, kNoVertex};
         }
         std::sort(waits.begin(), waits.end());
         waits.erase(std::unique(waits.begin(), waits.end()), waits.end());
         waits_for[s] = static_cast<std::uint32_t>(waits.size());
         before.insert(before.end(), waits.begin(), waits.end());
-        for (std::uint32_t v = from.vertices_end; v < to.vertices_end; ++v) actor[v] = s;
+        for (std::uint32_t v = from.vertices_end; v < to.vertices_end; ++v) last[v].actor = s;
         for (const std::uint32_t v : around)
-            if (actor[v] != s) {
+            if (last[v].actor != s) {
                 std::uint32_t at = unused;
                 if (at == kNoVertex) {
                     at = static_cast<std::uint32_t>(touches.size());
@@ -118,13 +159,14 @@ Dependencies::Dependencies(const ProgressiveMesh& mesh, const std::vector<bool>&
                 } else {
                     unused = touches[at].next;
                 }
-                touches[at] = {s, touched[v]};
-                touched[v] = at;
+                touches[at] = {s, last[v].touch};
+                last[v].touch = at;
             }
         replay(from, to);
         from = to;
     }
-    for (auto* done : {&first_, &next_, &actor, &touched}) std::vector<std::uint32_t>().swap(*done);
+    std::vector<Last>().swap(last);
+    for (auto* done : {&first_, &next_}) std::vector<std::uint32_t>().swap(*done);
     std::vector<Triangle>().swap(corners_);
     std::vector<Touch>().swap(touches);
     begin_.assign(count + 1, 0);
@@ -288,12 +330,15 @@ class Batches {
 
 /// How many splits make the mesh in the file as near as the record's is that has half as many triangles as
 /// the whole, a quarter, and so on; ascending.
-std::vector<std::uint32_t> halvings(const ProgressiveMesh& mesh, double excess) {
+std::vector<std::uint32_t> halvings(const ProgressiveMesh& mesh, const std::function<float(float)>& raised) {
     std::vector<std::uint32_t> levels;
     for (std::uint64_t triangles = mesh.triangles.size() / 2; triangles > mesh.base_triangles;
          triangles /= 2) {
         const double error = error_at(mesh, level_for_triangles(mesh, triangles));
-        levels.push_back(static_cast<std::uint32_t>(level_for_error(mesh, error / excess)));
+        const auto near = std::partition_point(mesh.splits.begin(), mesh.splits.end(), [&](const Split& s) {
+            return double(raised(s.error)) > error;
+        });
+        levels.push_back(static_cast<std::uint32_t>(near - mesh.splits.begin()));
     }
     std::reverse(levels.begin(), levels.end());
     return levels;
@@ -302,8 +347,8 @@ std::vector<std::uint32_t> halvings(const ProgressiveMesh& mesh, double excess) 
 }  // namespace
 
 std::vector<Sweep> schedule(const ProgressiveMesh& mesh, const std::vector<bool>& traded,
-                            const std::vector<bool>& idle, double excess) {
-    const std::vector<std::uint32_t> levels = halvings(mesh, excess);
+                            const std::vector<bool>& idle, const std::function<float(float)>& raised) {
+    const std::vector<std::uint32_t> levels = halvings(mesh, raised);
     if (auto batches = Batches(mesh, traded).sweeps(levels); !batches.empty()) return batches;
     const auto count = static_cast<std::uint32_t>(mesh.splits.size());
     Dependencies depends(mesh, idle);

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "vsplit/progressive_mesh.hpp"
@@ -44,10 +45,9 @@ struct Sweep {
 /// leaves the mesh around each as it was. A record in which long rows of splits change different triangles is
 /// written in batches, else in rounds, in sweeps that each reach such a level. `traded` tells of each vertex
 /// of the record whether it keeps its parent's number when it is born, and the parent gets the new one.
-/// `mesh` must be sound. `idle` tells of each
-/// move that the file does not have it. `excess` is what the file's errors will be over the record's, as a
-/// factor.
+/// `idle` tells of each move that the file does not have it. `raised` is what the file will tell for an error
+/// of the record; it never falls with it. `mesh` must be sound.
 std::vector<Sweep> schedule(const ProgressiveMesh& mesh, const std::vector<bool>& traded,
-                            const std::vector<bool>& idle, double excess);
+                            const std::vector<bool>& idle, const std::function<float(float)>& raised);
 
 }  // namespace vsplit

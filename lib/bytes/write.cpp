@@ -105,14 +105,9 @@ Result<Encoded> encode(const ProgressiveMesh& mesh, const WriteOptions& options)
     }
     WholeNumbers& numbers = out.numbers;
     numbers.details.origin = mesh.origin;
-    const auto may_be_rough = [](double tolerance) { return tolerance > 0; };
-    const bool rough =
-        std::any_of(numbers.birth_tolerance.begin(), numbers.birth_tolerance.end(), may_be_rough) ||
-        std::any_of(numbers.move_tolerance.begin(), numbers.move_tolerance.end(), may_be_rough);
-    const double excess = rough ? 1 + kRoughShare : 1;
-    std::vector<Sweep> sweeps = schedule(mesh, numbers.traded, numbers.idle, excess);
-    for (Sweep& sweep : sweeps)
-        sweep.error = std::min(sweep.error * float(excess), std::numeric_limits<float>::max());
+    const auto raised = [&](float error) { return numbers.roughness.raised(error); };
+    std::vector<Sweep> sweeps = schedule(mesh, numbers.traded, numbers.idle, raised);
+    for (Sweep& sweep : sweeps) sweep.error = raised(sweep.error);
 
     // The first pass learns the weights of prediction.
     PlaceFit fit;

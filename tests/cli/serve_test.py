@@ -263,6 +263,37 @@ class ServeTest(CommandTest):
         for s in slow:
             s.close()
 
+    def test_a_crowd_of_slow_clients_is_shown_out(self):
+        self.write('public/big.bin', bytes(20_000_000))
+        server = self.serve()
+        # More than it serves at once: some say nothing, some a byte of a header now and then, some hardly read.
+        crowd = [server.connect() for _ in range(600)]
+        for i, s in enumerate(crowd):
+            s.setblocking(False)
+            if i % 3:
+                s.send(b'GET / HTTP/1.1\r\nX: ' if i % 3 == 1 else b'GET /big.bin HTTP/1.1\r\n\r\n')
+        over = threading.Event()
+
+        def drip():
+            while not over.wait(0.1):
+                for i, s in enumerate(crowd):
+                    try:
+                        s.recv(8) if i % 3 == 2 else s.send(b'a') if i % 3 == 1 else None
+                    except OSError:
+                        pass
+        dripping = threading.Thread(target=drip)
+        dripping.start()
+        try:
+            began = time.monotonic()
+            self.assertEqual(server.ask('/data.pmesh')[1], DATA)
+            self.assertLess(time.monotonic() - began, 15)
+        finally:
+            over.set()
+            dripping.join()
+            for s in crowd:
+                s.close()
+        self.assertEqual(server.ask('/data.pmesh')[0].status, 200)
+
     def test_a_file_that_shrinks(self):
         big = self.path('public/big.bin')
         big.write_bytes(bytes(50_000_000))

@@ -11,12 +11,16 @@
 
 namespace vsplit::app {
 
-Connection::Connection(socket_t socket, const ConnectionLimits& limits, const Stopping& stopping)
-    : socket_(socket), limits_(limits), stopping_(stopping), request_began_(Clock::now()) {}
+Connection::Connection(socket_t socket, const ConnectionLimits& limits, const Stopping& stopping,
+                       const std::atomic<int>& busy)
+    : socket_(socket), limits_(limits), stopping_(stopping), busy_(busy), request_began_(Clock::now()) {}
 
-bool Connection::wait(short event, Clock::time_point until, int stop_at) const {
+bool Connection::wait(short event, Clock::time_point since, std::chrono::milliseconds patience,
+                      int stop_at) const {
     while (stopping_ < stop_at) {
-        const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(until - Clock::now()).count();
+        const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(
+                              since + now_patient(patience) - Clock::now())
+                              .count();
         if (left <= 0) return false;
         pollfd poll{socket_, event, 0};
         const int ready = ::poll(&poll, 1, static_cast<int>(std::min<long long>(left, 100)));
@@ -27,7 +31,7 @@ bool Connection::wait(short event, Clock::time_point until, int stop_at) const {
 }
 
 bool Connection::wait_for_request() {
-    if (begin_ == end_ && !wait(POLLIN, Clock::now() + limits_.idle_time, 1)) return false;
+    if (begin_ == end_ && !wait(POLLIN, Clock::now(), limits_.idle_time, 1)) return false;
     received_ = 0;
     sent_ = 0;
     request_began_ = Clock::now();
@@ -35,10 +39,10 @@ bool Connection::wait_for_request() {
 }
 
 bool Connection::is_readable() const {
-    return begin_ < end_ || wait(POLLIN, request_began_ + limits_.request_time, 1);
+    return begin_ < end_ || wait(POLLIN, request_began_, limits_.request_time, 1);
 }
 bool Connection::is_writable() const {
-    return wait(POLLOUT, Clock::now() + limits_.stall_time, 2);
+    return wait(POLLOUT, Clock::now(), limits_.stall_time, 2);
 }
 
 ssize_t Connection::read(char* bytes, std::size_t size) {
@@ -63,8 +67,9 @@ ssize_t Connection::read(char* bytes, std::size_t size) {
 
 ssize_t Connection::write(const char* bytes, std::size_t size) {
     if (sent_ == 0) response_began_ = Clock::now();
-    const auto taken = std::chrono::duration_cast<std::chrono::seconds>(Clock::now() - response_began_);
-    if (taken > limits_.stall_time && sent_ < limits_.slowest * static_cast<std::uint64_t>(taken.count()))
+    const auto taken = std::chrono::duration_cast<std::chrono::milliseconds>(Clock::now() - response_began_);
+    if (taken > now_patient(limits_.stall_time) &&
+        sent_ < limits_.slowest * static_cast<std::uint64_t>(taken.count()) / 1000)
         return -1;
     if (!is_writable()) return -1;
     const ssize_t sent = ::send(socket_, bytes, size, MSG_NOSIGNAL | MSG_DONTWAIT);

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <memory>
 #include <thread>
 
@@ -131,7 +132,8 @@ FileServer::FileServer(Folder folder, ServerOptions options)
     : folder_(std::move(folder)), options_(std::move(options)) {
     new_task_queue = [this] { return new httplib::ThreadPool(options_.connections); };
     // Not SO_REUSEPORT, with which a second server would share the port and take every other request.
-    set_socket_options([](socket_t socket) {
+    set_socket_options([this](socket_t socket) {
+        listening_ = socket;
         const int yes = 1;
         setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
     });
@@ -168,6 +170,10 @@ FileServer::FileServer(Folder folder, ServerOptions options)
     }));
 }
 
+bool FileServer::queue_connections() {
+    return ::listen(listening_, SOMAXCONN) == 0;
+}
+
 void FileServer::stop_gently(std::chrono::milliseconds grace) {
     // Connections that come meanwhile are closed unheard. httplib itself is told at the end only: from then
     // on it begins no body, not even of a response whose headers are out.
@@ -184,7 +190,7 @@ void FileServer::stop_hard() {
 
 bool FileServer::process_and_close_socket(socket_t socket) {
     ++busy_;
-    Connection connection(socket, options_.limits, stopping_);
+    Connection connection(socket, options_.limits, stopping_, busy_);
     current_connection = &connection;
     bool closed = false;
     for (std::size_t left = options_.limits.requests; left > 0 && !closed; --left) {
@@ -246,7 +252,10 @@ void FileServer::answer(const httplib::Request& request, httplib::Response& resp
     const std::string path = request.path.substr(1);
     const std::string viewer = std::string(kViewerPath).substr(1);
     if (path.starts_with(viewer)) return answer_viewer(request, response, path.substr(viewer.size()));
+    errno = 0;
     auto file = folder_.find(path);
+    if (!file && (errno == EMFILE || errno == ENFILE))
+        return say_plainly(response, 503, "Too many files are open. Try again.");
     if (!file) return say_plainly(response, 404, "There is no such file here.");
     if (!file->folder) return answer_file(request, response, std::move(*file), path);
     if (!path.empty() && path.back() != '/')

@@ -13,7 +13,7 @@ namespace vsplit::app {
 
 struct ServerOptions {
     std::string allowed_origin = "*";  ///< Pages of which other origin may read; empty for none.
-    std::size_t connections = 64;      ///< Served at once; others wait.
+    std::size_t connections = 256;     ///< Served at once; others wait.
     ConnectionLimits limits;
 };
 
@@ -22,6 +22,9 @@ class FileServer final : public httplib::Server {
   public:
     FileServer(Folder folder, ServerOptions options);
 
+    /// Once it is bound: many connections may come at once. httplib lets five wait; others try again a second
+    /// later.
+    bool queue_connections();
     /// From another thread: no more requests; responses that are on their way have `grace`, then are cut.
     void stop_gently(std::chrono::milliseconds grace);
     /// From another thread: now.
@@ -40,6 +43,7 @@ class FileServer final : public httplib::Server {
     ServerOptions options_;
     Stopping stopping_{0};
     std::atomic<int> busy_{0};
+    socket_t listening_ = INVALID_SOCKET;
 };
 
 }  // namespace vsplit::app

@@ -21,13 +21,14 @@ const canvas = element<HTMLCanvasElement>('view');
 const { scene, camera } = makeScene();
 let renderer: ReturnType<typeof makeRenderer>;
 // A context of GL takes as long as the scripts did: a task of its own.
-await new Promise((next) => setTimeout(next));
+await turn();
 try {
     renderer = makeRenderer(canvas);
 } catch {
     notice('This browser shows no WebGL 2.', false);
     throw new Error('no WebGL 2');
 }
+await turn();
 const pace = new Pace(renderer.getContext() as WebGL2RenderingContext);
 const orbit = new OrbitControls(camera, canvas);
 orbit.enableDamping = true;
@@ -41,6 +42,8 @@ let share = 1, fitted = 1;
 let heats: Partial<Record<string, Heat>> = {};
 let plain = new Map<Mesh, Material | Material[]>();
 let drawn = true;
+/** The next frame is the first with new shaders, which takes long: nothing else happens in it. */
+let cold = false;
 let frames: number[] = [];
 let lastTarget = '';
 
@@ -51,6 +54,9 @@ Object.assign(window, { vsplit: { state, get model() { return model; }, renderer
 const bytesText = (bytes: number) => (bytes < 1e6 ? `${(bytes / 1e3).toFixed(0)} kB` : `${(bytes / 1e6).toFixed(2)} MB`);
 /** toLocaleString() takes 20 ms the first time. */
 const count = (n: number) => String(n).replace(/\B(?=(\d{3})+$)/g, ',');
+
+/** Ends a task of the page: what comes after it is another. */
+function turn() { return new Promise<void>((next) => setTimeout(next)); }
 
 /** The slider's ends are the base mesh and all; between them each step is the same factor. */
 const sliderRatio = () => {
@@ -157,7 +163,11 @@ function open(source: string | File, name: string) {
         // Shaders are compiled beside the page: the first frame would wait for them.
         opened.visible = false;
         await renderer.compileAsync(opened, camera, scene);
-        opened.visible = true;
+        for (const program of renderer.info.programs ?? []) {
+            program.getUniforms();
+            await turn();
+        }
+        opened.visible = cold = true;
         if (model !== opened) return;
         state.ready = true;
         if (opened.info) start(opened);
@@ -188,7 +198,7 @@ function showProgress(progress: Progress) {
     const whole = progress.fileBytes ?? Math.max(progress.needed, 1);
     element('arrived').style.width = `${(100 * progress.fed) / whole}%`;
     element('wanted').style.width = `${(100 * progress.needed) / whole}%`;
-    if (progress.retry) notice(`The connection broke (${progress.retry.reason}). Trying again, for the ${['first', 'second', 'third', 'fourth', 'fifth'][progress.retry.attempt - 1] ?? 'last'} time …`, false, true);
+    if (progress.retry) notice(`The connection broke (${progress.retry.reason}). Trying again${progress.retry.attempt > 1 ? `, attempt ${progress.retry.attempt}` : ''} …`, false, true);
     else if (element('notice').classList.contains('soft')) element('notice').hidden = true;
 }
 
@@ -244,7 +254,8 @@ function tick(now: number) {
     orbit.autoRotate = input('turn').checked;
     const moved = orbit.update(timer.getDelta());
     if (mode() === 'pixels') aim();
-    const changed = model?.update() ?? false;
+    const changed = cold || (model?.update() ?? false);
+    cold = false;
     const updated = performance.now();
     mixer?.update(timer.getDelta());
     if (changed || moved || mixer || !drawn) {

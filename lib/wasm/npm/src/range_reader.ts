@@ -9,9 +9,9 @@ export interface ReaderOptions {
     bytesPerSecond: number;
     /** Without a byte for so long, a connection counts as broken, in milliseconds. */
     stallTime: number;
-    /** Attempts in a row that bring no byte before it gives up. */
+    /** Attempts in a row that bring no byte before it gives up; three times as many where the server answered, and then broke off. */
     attempts: number;
-    /** The wait before the second attempt, in milliseconds; doubles with each. */
+    /** The wait before the second attempt, in milliseconds; doubles with each, up to the eightfold. */
     retryDelay: number;
     /** Sent with each request. */
     headers: Record<string, string>;
@@ -30,6 +30,11 @@ export const readerDefaults: ReaderOptions = {
     credentials: 'same-origin',
     onRetry: () => {},
 };
+
+/** Without any length, the file ends where so many answers end. */
+const kEnds = 3;
+/** After a break so many bytes are asked for, and half as many after each further one: a browser throws away what it had not yet handed on. */
+const kBytesAfterBreak = 32 * 1024, kLeastBytes = 2048;
 
 /** Called with each piece; false when no more is wanted. */
 export type Sink = (bytes: Uint8Array) => boolean | Promise<boolean>;
@@ -102,6 +107,14 @@ function contentRange(response: Response): { first: number; size?: number } | un
     return match ? { first: Number(match[1]), size: match[3] === '*' ? undefined : Number(match[3]) } : undefined;
 }
 
+interface Judged {
+    skip: number;
+    /** Ranges are ignored: it is all of the file. */
+    whole: boolean;
+    /** Takes over what the headers say. */
+    believe(): void;
+}
+
 /** Any HTTP server. */
 export class HttpReader implements ByteReader {
     size: number | undefined;
@@ -109,68 +122,79 @@ export class HttpReader implements ByteReader {
     /** False once the server answered a range with the whole file. */
     ranges = true;
     private tag: string | null = null;
+    /** The last attempt had an answer that could have been right. */
+    private answered = false;
+    /** And it said how long it is: then the browser sees to it that it is. */
+    private announced = false;
 
     constructor(readonly url: string, private readonly options: ReaderOptions) {}
 
     async read(begin: number, end: number, sink: Sink, signal: AbortSignal, fresh = false): Promise<number> {
         let at = begin;
-        let failures = 0;
+        let failures = 0, silent = 0, ends = 0;
         let satisfied = false;
         const take = async (bytes: Uint8Array) => {
             for await (const part of throttled(bytes, this.options, signal)) {
                 at += part.length;
-                failures = 0;
+                failures = ends = 0;
                 if (!await sink(part)) return (satisfied = true), false;
             }
             return at < end;
         };
         while (at < end && !satisfied && !signal.aborted && !(this.size !== undefined && at >= this.size)) {
+            const asked = failures === 0 || !this.ranges ? end : Math.min(end, at + Math.max(kLeastBytes, kBytesAfterBreak >> (failures - 1)));
+            this.answered = this.announced = false;
             try {
-                await this.attempt(at, end, take, signal, fresh);
-                // A body that ends before its time is a broken connection, too, unless the file's end is not known.
-                if (at < end && !satisfied && !signal.aborted) {
-                    if (this.size === undefined) break;
-                    if (at < this.size) throw new TypeError('the connection ended too early');
+                await this.attempt(at, asked, end, take, signal, fresh);
+                // A body that ends before its time is a broken connection, too. If nobody said how long the file is, it may end there.
+                if (at < asked && !satisfied && !signal.aborted) {
+                    if (this.size === undefined && (this.announced || ++ends >= kEnds)) break;
+                    if (this.size === undefined || at < this.size) throw new TypeError('the connection ended too early');
                 }
             } catch (error) {
                 if (signal.aborted) break;
                 if (error instanceof VsplitError) throw error;
                 const reason = (error as Error).message || String(error);
-                if (++failures >= this.options.attempts)
+                failures++;
+                silent = this.answered ? 0 : silent + 1;
+                if (silent >= this.options.attempts || failures >= 3 * this.options.attempts)
                     throw new VsplitError('network', at > 0 || this.received > 0
                         ? `The connection broke ${failures} times in a row (${reason}). ${at} bytes of the file had arrived.`
                         : `The server cannot be reached (${reason}). It may be down, not allow pages of other origins (CORS), or redirect in circles.`);
                 this.options.onRetry(failures, reason);
-                await pause(this.options.retryDelay * 2 ** (failures - 1), signal);
+                await pause(this.options.retryDelay * 2 ** Math.min(failures - 1, 3), signal);
             }
         }
         return at - begin;
     }
 
     /** One request from `at` on. Throws VsplitError for what will not get better by asking again. */
-    private async attempt(at: number, end: number, take: (bytes: Uint8Array) => Promise<boolean>, signal: AbortSignal, fresh: boolean) {
+    private async attempt(at: number, asked: number, end: number, take: (bytes: Uint8Array) => Promise<boolean>, signal: AbortSignal, fresh: boolean) {
         const stop = new AbortController();
         const abort = () => stop.abort();
         signal.addEventListener('abort', abort);
         let timer = setTimeout(abort, this.options.stallTime);
-        const alive = () => {
-            clearTimeout(timer);
+        const rest = () => clearTimeout(timer);
+        const wait = () => {
+            rest();
             timer = setTimeout(abort, this.options.stallTime);
         };
         try {
             const response = await fetch(this.url, {
                 // A simple Range needs no preflight; an If-Range would.
-                headers: { ...this.options.headers, Range: Number.isFinite(end) ? `bytes=${at}-${end - 1}` : `bytes=${at}-` },
+                headers: { ...this.options.headers, Range: Number.isFinite(asked) ? `bytes=${at}-${asked - 1}` : `bytes=${at}-` },
                 credentials: this.options.credentials,
                 cache: fresh ? 'no-store' : 'default',
                 signal: stop.signal,
             });
-            alive();
-            const skip = this.judge(response, at);
-            if (skip === undefined || !response.body) return;
+            const judged = this.judge(response, at);
+            if (!judged || !response.body) return;
+            this.answered = true;
+            this.announced = Boolean(response.headers.get('Content-Length'));
             const body = response.body.getReader();
             try {
-                await this.drain(body, skip, end - at, take, alive);
+                // Where ranges are ignored all comes at once.
+                await this.drain(body, judged, (judged.whole ? end : asked) - at, take, wait, rest);
             } finally {
                 body.cancel().catch(() => {});
             }
@@ -178,37 +202,43 @@ export class HttpReader implements ByteReader {
             if (stop.signal.aborted && !signal.aborted) throw new TypeError('no bytes for a long time');
             throw error;
         } finally {
-            clearTimeout(timer);
+            rest();
             signal.removeEventListener('abort', abort);
             stop.abort();
         }
     }
 
-    /** How many bytes of the body come before those asked for; undefined if the file ends before them. */
-    private judge(response: Response, at: number): number | undefined {
+    /**
+     * How many bytes of the body come before those asked for; undefined if the file ends before them. A browser takes headers that were
+     * cut off for whole ones: what they say is believed with the first byte that comes after them.
+     */
+    private judge(response: Response, at: number): Judged | undefined {
         const status = `${response.status}${response.statusText ? ` ${response.statusText}` : ''}`;
         if (response.status === 416) {
             const size = /^bytes \*\/(\d+)$/.exec(response.headers.get('Content-Range') ?? '');
             this.size = size ? Number(size[1]) : at;
             return undefined;
         }
-        if (response.status >= 500 || response.status === 408 || response.status === 429)
+        if (response.status < 200 || response.status >= 500 || response.status === 408 || response.status === 429)
             throw new TypeError(`the server answered ${status}`);
         if (!response.ok) throw new VsplitError('http', `The server answered ${status} for ${response.url || this.url}.`);
-        const tag = response.headers.get('ETag');
-        if (tag && this.tag && tag !== this.tag) throw new VsplitError('server', 'The file has changed on the server while it was read. Load it again.');
-        this.tag ??= tag;
-        if (response.status === 206) {
+        const whole = response.status !== 206;
+        const believe = () => {
+            const tag = response.headers.get('ETag');
+            if (tag && this.tag && tag !== this.tag) throw new VsplitError('server', 'The file has changed on the server while it was read. Load it again.');
+            this.tag ??= tag;
+            this.ranges = !whole;
+            if (whole) {
+                const length = response.headers.get('Content-Length');
+                if (length && !response.headers.get('Content-Encoding')) this.learn(Number(length));
+                return;
+            }
             const range = contentRange(response);
             if (range && range.first !== at) throw new VsplitError('server', `The server was asked for bytes from ${at} on, and sent those from ${range.first} on.`);
             if (range?.size !== undefined) this.learn(range.size);
-            return 0;
-        }
-        // The whole file: what comes before is read again, and thrown away.
-        this.ranges = false;
-        const length = response.headers.get('Content-Length');
-        if (length && !response.headers.get('Content-Encoding')) this.learn(Number(length));
-        return at;
+        };
+        // Of the whole file, what comes before is read again, and thrown away.
+        return { skip: whole ? at : 0, whole, believe };
     }
 
     private learn(size: number) {
@@ -217,11 +247,14 @@ export class HttpReader implements ByteReader {
         this.size = size;
     }
 
-    private async drain(body: ReadableStreamDefaultReader<Uint8Array>, skip: number, wanted: number, take: (bytes: Uint8Array) => Promise<boolean>, alive: () => void) {
+    /** The clock runs only while the server is waited for, not while its bytes are throttled or decoded. */
+    private async drain(body: ReadableStreamDefaultReader<Uint8Array>, { skip, believe }: Judged, wanted: number, take: (bytes: Uint8Array) => Promise<boolean>, wait: () => void, rest: () => void) {
         while (wanted > 0) {
+            wait();
             const { done, value } = await body.read();
-            alive();
+            rest();
             if (done) return;
+            if (value.length > 0) believe();
             this.received += value.length;
             const over = Math.min(skip, value.length);
             skip -= over;
@@ -229,7 +262,6 @@ export class HttpReader implements ByteReader {
             const bytes = value.subarray(over, over + wanted);
             wanted -= bytes.length;
             if (bytes.length > 0 && !await take(bytes)) return;
-            alive();
         }
     }
 }

@@ -43,6 +43,8 @@ interface Part {
     attributes?: Set<string>;
 }
 
+const draws = (part: Part, name: string) => !part.attributes || name === 'position' || name === 'normal' || part.attributes.has(name);
+
 /**
  * A mesh, or a scene, whose triangles come and go. Call update() once a frame, before the renderer draws.
  * Events: 'progress', 'level', 'error' (each with its value as a property of that name), 'bounds' (they are others than before).
@@ -196,15 +198,15 @@ export class VsplitModel extends Group<{ progress: { progress: Progress }; level
         for (const part of this.parts) {
             const geometry = part.copies[side].geometry;
             for (const [name, array] of this.arrays) {
+                if (!draws(part, name)) continue;
                 const used = kNames[name] ?? name;
-                if (part.attributes && name !== 'position' && name !== 'normal' && !part.attributes.has(name)) continue;
                 let attribute = this.attributes[side].get(name);
                 if (!attribute) {
                     this.attributes[side].set(name, attribute = array.attribute(side, gl));
                     // three.js sends it whole, however large.
                     if (!gl) fresh += array.data.byteLength;
                 }
-                if (!geometry.hasAttribute(used)) geometry.setAttribute(used, attribute);
+                if (geometry.getAttribute(used) !== attribute) geometry.setAttribute(used, attribute);
                 if (!seen.has(name)) attributes.push([array, attribute]);
                 seen.add(name);
                 if (fresh > this.frameBytes) return false;
@@ -282,6 +284,7 @@ export class VsplitModel extends Group<{ progress: { progress: Progress }; level
                 const mesh = new Mesh(new BufferGeometry(), (Array.isArray(given) ? given[group % given.length] : given) ?? plain);
                 this.add(mesh);
                 this.addPart(group, [mesh], 1, low, high);
+                mesh.geometry = this.parts[group].copies[0].geometry;
             }
             this.begin();
             return;
@@ -332,6 +335,8 @@ export class VsplitModel extends Group<{ progress: { progress: Progress }; level
         };
         const box = new Box3(low.clone().multiplyScalar(scale), high.clone().multiplyScalar(scale));
         for (const copy of part.copies) {
+            // three.js chooses the shader by the attributes that it sees first, and does not look again: without normals, facets.
+            for (const [name, array] of this.arrays) if (draws(part, name)) copy.geometry.setAttribute(kNames[name] ?? name, array.placeholder());
             copy.geometry.boundingBox = box;
             copy.geometry.boundingSphere = box.getBoundingSphere(new Sphere());
         }

@@ -91,6 +91,11 @@ export class LiveArray {
         for (let chunk = Math.floor(start / kChunk); chunk <= last; ++chunk) this.dirty[0][chunk] = this.dirty[1][chunk] = this.used[chunk] = 1;
     }
 
+    /** Of the same kind, for one vertex. */
+    placeholder(): BufferAttribute {
+        return new BufferAttribute(new (this.data.constructor as { new(n: number): Numbers })(this.itemSize), this.itemSize, this.normalized);
+    }
+
     /** With a context, a buffer that is yet to be filled; without, three.js sends all of the array as it is. */
     attribute(side: 0 | 1, gl: WebGL2RenderingContext | null): BufferAttribute {
         if (gl) {
