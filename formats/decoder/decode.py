@@ -904,7 +904,8 @@ class Decoder:
                 if len(self.splits) == begin:
                     self.error_bits = struct.unpack('<I', struct.pack('<f', error_before))[0]
                 else:
-                    self.error_bits -= self.error.decode(coder)
+                    steps = ((self.error_bits + (1 << 15) - 1) >> 15) - self.error.decode(coder)
+                    self.error_bits = min(self.error_bits, steps << 15)
                 alive = len(self.live.at)
                 self.sweep += 1
                 self.older = alive

@@ -50,9 +50,12 @@ const char* SplitCodec::code_head(Coder& coder, SweepHead& head) {
         if (head.error_bits > error_bits_) return "a sweep's error grows";
         error_bits_ = head.error_bits;
     } else {
-        const std::uint32_t fall = error_.code(coder, error_bits_ - head.error_bits);
-        if (fall > error_bits_) return "a sweep's error is negative";
-        head.error_bits = error_bits_ -= fall;
+        // Within a block eight digits will do; rounded up.
+        const auto steps = [](std::uint32_t bits) { return (bits + (1u << kErrorShift) - 1) >> kErrorShift; };
+        const std::uint32_t before = steps(error_bits_),
+                            fall = error_.code(coder, before - steps(head.error_bits));
+        if (fall > before) return "a sweep's error is negative";
+        head.error_bits = error_bits_ = std::min(error_bits_, (before - fall) << kErrorShift);
     }
     const std::uint32_t alive = live.vertex_count();
     if (head.marked == 0 && head.unmarked == 0) return "a sweep is empty";

@@ -225,6 +225,7 @@ class SplitCodec {
     std::uint32_t sweep_ = 0, cursor_ = 0;
     std::uint32_t older_ = 0;  ///< Vertices at the sweep's beginning.
     bool sparse_ = false;
+    static constexpr int kErrorShift = 15;
     std::uint32_t error_bits_;
     std::int32_t split_size_ = 0;
     std::array<BitModel, 8 * 18 * 10> mark_ = round_answers();

@@ -140,7 +140,7 @@ Result<Encoded> encode(const ProgressiveMesh& mesh, const WriteOptions& options)
     std::size_t before_blocks = kHeaderBytes + 64 + out.base.size();
     std::size_t target = 0;
     // A sweep of rounds about doubles the mesh, and what ends within it promises nothing new.
-    const std::size_t growth = !sweeps.empty() && sweeps.front().kind == SweepKind::kRounds ? 1 : 3;
+    const std::size_t growth = !sweeps.empty() && sweeps.front().kind == SweepKind::kRounds ? 1 : 2;
     const auto next_target = [&] {
         target = std::min<std::size_t>(options.block_bytes, std::max(kLeastBlock, before_blocks / growth));
     };

@@ -40,7 +40,7 @@ Result<std::vector<std::byte>> write_progressive_mesh(const ProgressiveMesh& mes
 /// What reading the written file gives, byte for byte: places and attributes as they are rounded, and splits
 /// in the order of the file. Splits that do not touch each other are free to change places, so vertices and
 /// triangles have other numbers, and a split's error is that of the batch that it is in, which is never less
-/// than its own.
+/// than its own, and within a block up to 2^-8 of it more.
 Result<ProgressiveMesh> canonical_progressive_mesh(const ProgressiveMesh& mesh,
                                                    const WriteOptions& options = {});
 
