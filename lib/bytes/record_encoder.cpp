@@ -17,6 +17,23 @@ void find_trades_and_idle(const ProgressiveMesh& mesh, WholeNumbers& numbers) {
     const auto stride = static_cast<std::ptrdiff_t>(numbers.stride);
     numbers.traded.assign(mesh.positions.size(), false);
     numbers.idle.assign(mesh.moves.size(), false);
+    // Is a vertex, as it is now, what row `to` of the births or moves makes of it?
+    const auto stays = [&](std::uint32_t vertex, bool to_move, std::uint32_t to) {
+        const bool moved = move_of[vertex] != kNoVertex;
+        const std::uint32_t row = moved ? move_of[vertex] : vertex;
+        const auto at = [&](bool move, std::uint32_t i) {
+            return (move ? numbers.move_at : numbers.birth_at)[i];
+        };
+        const auto finer = [&](bool move, std::uint32_t i) {
+            return (move ? numbers.move_finer : numbers.birth_finer)[i];
+        };
+        const auto values = [&](bool move, std::uint32_t i) {
+            return (move ? numbers.move_values : numbers.birth_values).begin() + i * stride;
+        };
+        return at(to_move, to) == at(moved, row) &&
+               (!numbers.lossless || finer(to_move, to) == finer(moved, row)) &&
+               std::equal(values(to_move, to), values(to_move, to) + stride, values(moved, row));
+    };
     std::uint32_t begin = mesh.base_vertices, move = 0;
     for (const Split& split : mesh.splits) {
         for (std::uint32_t v = begin; v < split.vertices_end; ++v) {
@@ -26,30 +43,11 @@ void find_trades_and_idle(const ProgressiveMesh& mesh, WholeNumbers& numbers) {
             for (std::uint32_t w = begin; w < split.vertices_end; ++w) children += mesh.parents[w] == parent;
             for (std::uint32_t m = move; m < split.moves_end; ++m) moves += mesh.moves[m].vertex == parent;
             if (children != 1 || moves == 0) continue;
-            const std::uint32_t now = move_of[parent];
-            const bool moved = now != kNoVertex;
-            const std::uint32_t row = moved ? now : parent;
-            const auto values = numbers.birth_values.begin() + v * stride,
-                       parent_values =
-                           (moved ? numbers.move_values : numbers.birth_values).begin() + row * stride;
-            numbers.traded[v] =
-                numbers.birth_at[v] == (moved ? numbers.move_at : numbers.birth_at)[row] &&
-                (!numbers.lossless ||
-                 numbers.birth_finer[v] == (moved ? numbers.move_finer : numbers.birth_finer)[row]) &&
-                std::equal(values, values + stride, parent_values);
+            numbers.traded[v] = stays(parent, false, v);
         }
         for (std::uint32_t m = move; m < split.moves_end; ++m) {
-            const std::uint32_t v = mesh.moves[m].vertex, now = move_of[v];
-            const bool moved = now != kNoVertex;
-            const std::uint32_t row = moved ? now : v;
-            const auto values = numbers.move_values.begin() + m * stride,
-                       values_now =
-                           (moved ? numbers.move_values : numbers.birth_values).begin() + row * stride;
-            numbers.idle[m] =
-                numbers.move_at[m] == (moved ? numbers.move_at : numbers.birth_at)[row] &&
-                (!numbers.lossless ||
-                 numbers.move_finer[m] == (moved ? numbers.move_finer : numbers.birth_finer)[row]) &&
-                std::equal(values, values + stride, values_now);
+            const std::uint32_t v = mesh.moves[m].vertex;
+            numbers.idle[m] = stays(v, true, m);
             for (std::uint32_t later = m + 1; later < split.moves_end; ++later)
                 if (mesh.moves[later].vertex == v) numbers.idle[m] = true;
         }
