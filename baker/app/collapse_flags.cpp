@@ -21,9 +21,10 @@ void CollapseFlags::add_to(CLI::App& command) {
         ->type_name("WHAT")
         ->allow_extra_args(false);
     command
-        .add_option("--stitch", stitch,
-                    "Boundaries that lie on each other, up to this share of the diagonal, collapse as one; 0: "
-                    "each by itself")
+        .add_option(
+            "--stitch", stitch,
+            "Boundaries that lie on each other, up to this share of the diagonal, collapse as one; 0: "
+            "each by itself")
         ->check(CLI::Range(0.0, 0.01))
         ->capture_default_str();
 }
